@@ -48,6 +48,7 @@ mod dearer;
 mod estimate;
 mod freed;
 mod front;
+mod log;
 mod misread;
 mod modes;
 mod others;

@@ -2,12 +2,13 @@
 
 use super::estimate::{StreamError, StreamEstimate, StreamOptions, StreamStage};
 use super::front::Front;
+use super::log::LEFT_OUT;
 use super::misread::Newest;
 use super::modes::{Modes, StreamModes};
 use super::sample::{Contacts, Felt, PalmSensed, Raw, StreamPalm};
 use super::solution::Solution;
 use super::thread::Worker;
-use super::window::{Asked, LEFT_OUT, LONGEST, Outcome, Window};
+use super::window::{Asked, LONGEST, Outcome, Window};
 use crate::contacts::options::ContactEstimateError;
 use glam::DVec3;
 use object_dynamics::MOST_PALMS;

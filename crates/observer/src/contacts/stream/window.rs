@@ -1,9 +1,10 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
+use super::log::log;
 use super::modes::Modes;
 use super::others::{ALONE, Followed};
-use super::sample::{ForceReading, PalmSensed, Raw, StreamPalm};
+use super::sample::{Raw, StreamPalm};
 use super::solution::{Of, Solution};
 use crate::contacts::body::{Body, CONSTANTS};
 use crate::contacts::cold;
@@ -23,7 +24,7 @@ use crate::contacts::state::Motion;
 use crate::contacts::suspects::Readings;
 use crate::contacts::windows::longest;
 use nalgebra::Matrix6;
-use object_dynamics::{ContactLog, ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion};
+use object_dynamics::ContactLog;
 use std::collections::VecDeque;
 
 /// Longest window in natural times: a body that is held turns by some radians in it, and so shows its inertia.
@@ -34,10 +35,11 @@ const SHORTEST: f64 = 5.0;
 /// windows tell all that is left to be known: with a stated inertia 10 % off squares are 15 times their variance in the worst stream where they hand on, and
 /// 8 times where they do not.
 const HANDED_ON: f64 = 4.0;
+/// Natural times that are enough of a motion before a gap, and those of a gap that ends one.
+const SOON: f64 = 3.0;
+const ENDED: f64 = 0.5;
 /// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
 const GAP: f64 = 0.2;
-/// Samples that are left out at most because a window cannot be read with them.
-pub(super) const LEFT_OUT: usize = 8;
 
 /// What a window is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,7 +123,7 @@ impl Window {
             // What spoke against the motion that was followed is not to speak against the next one as well.
             self.drop_older_than(SHORTEST);
         }
-        let (log, left_out) = self.log();
+        let (log, left_out) = log(&self.palms, &mut self.samples);
         let (natural, solution, freed, modes) = (None, None, Vec::new(), None);
         let mut outcome = Outcome { natural, lacks: Some(0.0), solution, freed, modes, left_out };
         let Some((log, record)) = log.and_then(|log| Record::new(&log, &self.options).map(|r| (log, r)))
@@ -176,58 +178,6 @@ impl Window {
         let Some(last) = self.samples.back().map(|raw| raw.t) else { return };
         let dropped = self.samples.partition_point(|raw| last - raw.t > times * self.natural);
         self.samples.drain(..dropped);
-    }
-
-    /// The samples as a log, without those that cannot be read in it, and how many those are.
-    fn log(&mut self) -> (Option<ContactLog>, usize) {
-        for left_out in 0..=LEFT_OUT {
-            let times = self.samples.iter().map(|raw| raw.t).collect();
-            let records = (0..self.palms.len()).map(|i| self.record(i)).collect();
-            match ContactLog::new(times, records, None) {
-                Ok(log) => return (Some(log), left_out),
-                Err(error) => match error.sample() {
-                    Some(sample) if sample < self.samples.len() => {
-                        self.samples.remove(sample);
-                    }
-                    _ => return (None, left_out),
-                },
-            }
-        }
-        (None, LEFT_OUT)
-    }
-
-    fn record(&self, i: usize) -> PalmRecord {
-        let StreamPalm { surface, friction } = self.palms[i];
-        let sensed = || self.samples.iter().filter_map(move |raw| raw.palms[i]);
-        let measured =
-            |s: PalmSensed| s.twist.map(|[v_WP, w_WP]| MeasuredMotion { pose: s.pose, v_WP, w_WP });
-        let motion = match sensed().map(measured).collect::<Option<Vec<_>>>() {
-            Some(states) => RecordedMotion::Measured(states),
-            None => RecordedMotion::Poses(sensed().map(|s| s.pose).collect()),
-        };
-        let normal = |s: PalmSensed| match s.force {
-            ForceReading::Normal(f) => Some(f),
-            ForceReading::Three(_) => None,
-        };
-        let three = |s: PalmSensed| match s.force {
-            ForceReading::Normal(_) => None,
-            ForceReading::Three(f) => Some(f),
-        };
-        let (forces, vectors): (Option<Vec<_>>, Option<Vec<_>>) =
-            (sensed().map(normal).collect(), sensed().map(three).collect());
-        let missing = ForceChannel::Missing;
-        PalmRecord {
-            surface,
-            friction,
-            motion,
-            contacts: ContactPoints::World(sensed().map(|s| s.contact).collect()),
-            force: forces.map(ForceChannel::Normal).or(vectors.map(ForceChannel::Three)).unwrap_or(missing),
-            impulse: ForceChannel::Missing,
-            torque: None,
-            hinge: None,
-            truth: None,
-            largest_offset: f64::INFINITY,
-        }
     }
 
     fn solution(
@@ -363,14 +313,10 @@ impl Window {
     }
 
     fn kept_of(&self, problem: &Problem, solved: &Solved<CONSTANTS>) -> Before {
-        let Problem { nodes, record, .. } = problem;
-        let at = |j: usize| record.times[nodes[j]];
-        let last = nodes.len() - 1;
-        let begin = at(last) - LONGEST * problem.units.time();
+        let record = problem.record;
         let known = self.options.body.is_some();
         let long = problem.lasts() > if known { LONGEST } else { LONGEST + HANDED_ON };
-        let from =
-            if long { nodes.partition_point(|&k| record.times[k] <= begin).saturating_sub(1) } else { 0 };
+        let from = if long { next_begins(problem) } else { 0 };
         let carried = match from {
             _ if known => None,
             0 => problem.first.is_handed_on().then_some((problem.first, problem.body)),
@@ -398,4 +344,17 @@ impl Window {
         }
         solution
     }
+}
+
+/// The node at which the next window begins, of one that is long enough: the longest window before the last, or after a gap that is soon after that.
+/// Little is known of a motion that a gap ends soon, and iterations hardly settle there.
+fn next_begins(problem: &Problem) -> usize {
+    let Problem { nodes, record, .. } = problem;
+    let (at, natural) = (|j: usize| record.times[nodes[j]], problem.units.time());
+    let last = nodes.len() - 1;
+    let begin = at(last) - LONGEST * natural;
+    let from = nodes.partition_point(|&k| record.times[k] <= begin).saturating_sub(1);
+    let soon = |j: &usize| at(*j) < at(from) + SOON * natural;
+    let ended = |j: &usize| at(j + 1) - at(*j) > ENDED * natural;
+    (from..last).take_while(soon).filter(ended).last().map_or(from, |j| j + 1)
 }
