@@ -23,7 +23,7 @@ const BENT: usize = 2;
 /// Root of one and the squared weights of a cubic through two contacts on either side, evenly spaced: noise of what a contact is off it by over that of one.
 const OF_CUBIC: f64 = 1.394;
 /// Fewest contacts of a palm whose scatter can be told.
-const FEWEST: usize = 20;
+pub(super) const FEWEST: usize = 20;
 /// Median of the length of a vector of two standard normal numbers.
 pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
 

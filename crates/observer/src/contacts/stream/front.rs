@@ -21,7 +21,7 @@ const BENT: f64 = 0.3;
 /// Times the interval before from which on an interval is a gap.
 const LONG: f64 = 2.5;
 /// The same in times over which it was looked what the trapezoidal rule misses, from which on the motion is not stated any more.
-const FORGOTTEN: f64 = 2.5;
+pub(super) const FORGOTTEN: f64 = 2.5;
 /// Share of the variance of an impulse that a bend must make to be seen: noise makes half of it once in some hundred samples.
 const SEEN: f64 = 0.5;
 

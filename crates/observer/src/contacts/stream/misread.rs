@@ -4,15 +4,13 @@
 //! contacts as they come, where one that is off by a fifth of the size turns the body as the noise of thousands does.
 
 use super::sample::{Contacts, Felt};
-use crate::contacts::outliers::{MEDIAN_LENGTH, MOST, OFF, TOGETHER};
+use crate::contacts::outliers::{FEWEST, MEDIAN_LENGTH, MOST, OFF, TOGETHER};
 use crate::contacts::record::{Contact, add_contact_noise};
 use glam::{DMat3, DVec3};
 use object_dynamics::MOST_PALMS;
 
 /// Contacts by whose scatter one is judged.
 const JUDGED: usize = 100;
-/// Fewest of them.
-const FEWEST: usize = 20;
 /// Times from one of two contacts to the next within which the line through them leads on.
 const LEADS: f64 = 3.5;
 
@@ -34,11 +32,11 @@ pub(super) struct Taken {
 struct Way {
     /// The latest two that are not off, with their times; none of the time before the palm was touched.
     known: [Option<(f64, DVec3)>; 2],
-    /// By how much contacts were off the line through two before them, in units of a contact's noise, m, and of which contact the next one is.
+    /// By how many metres of unit noise the latest contacts were off the line through two before them, and whether they were put on it.
     left: [f64; JUDGED],
-    judged: usize,
-    /// How often one of these was put elsewhere.
     put: [bool; JUDGED],
+    /// How many were judged so far.
+    judged: usize,
     /// Contacts in a row that were: as they were read, and what that took.
     held: [(f64, DVec3, Taken); TOGETHER],
     together: usize,
@@ -49,8 +47,8 @@ impl Default for Way {
         Self {
             known: [None; 2],
             left: [0.0; JUDGED],
-            judged: 0,
             put: [false; JUDGED],
+            judged: 0,
             held: Default::default(),
             together: 0,
         }

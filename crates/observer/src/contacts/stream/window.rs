@@ -1,6 +1,7 @@
 //! The motion over a window of the latest samples.
 
 use super::dearer::Dearer;
+use super::front::FORGOTTEN;
 use super::log::log;
 use super::modes::Modes;
 use super::others::{ALONE, Followed};
@@ -35,9 +36,8 @@ const SHORTEST: f64 = 5.0;
 /// windows tell all that is left to be known: with a stated inertia 10 % off squares are 15 times their variance in the worst stream where they hand on, and
 /// 8 times where they do not.
 const HANDED_ON: f64 = 4.0;
-/// Natural times that are enough of a motion before a gap, and those of a gap that ends one.
+/// Natural times that are enough of a motion before a gap over which it is not stated.
 const SOON: f64 = 3.0;
-const ENDED: f64 = 0.5;
 /// Natural times over which it is looked what the trapezoidal rule misses, for gaps after a window.
 const GAP: f64 = 0.2;
 
@@ -245,7 +245,6 @@ impl Window {
 
     /// From nothing, and whether the body is another one than was stated. None where the window leaves it open which of several motions it is.
     fn found<'a>(&mut self, mut problem: Problem<'a>) -> Option<(Problem<'a>, Solved<CONSTANTS>, bool)> {
-        self.before = None;
         self.others.clear();
         self.waits = ALONE;
         let ended = whole(&mut problem)?;
@@ -355,6 +354,6 @@ fn next_begins(problem: &Problem) -> usize {
     let begin = at(last) - LONGEST * natural;
     let from = nodes.partition_point(|&k| record.times[k] <= begin).saturating_sub(1);
     let soon = |j: &usize| at(*j) < at(from) + SOON * natural;
-    let ended = |j: &usize| at(j + 1) - at(*j) > ENDED * natural;
+    let ended = |j: &usize| at(j + 1) - at(*j) > FORGOTTEN * GAP * natural;
     (from..last).take_while(soon).filter(ended).last().map_or(from, |j| j + 1)
 }
