@@ -60,6 +60,12 @@ impl Rough {
         of(self.least()).max(self.counted())
     }
 
+    /// The same where rows longer than those that leave the least of readings would leave no less: None where what is left may be the motion's.
+    pub(crate) fn noise(&self) -> Option<f64> {
+        let [.., shorter, longest] = &self.all;
+        (of(longest) >= LESS * of(shorter)).then(|| self.deviation())
+    }
+
     /// What is rough over so few readings in a row that more of them would leave as much.
     pub(crate) fn least(&self) -> &[(f64, f64)] {
         let [first, rest @ ..] = &self.all;
@@ -194,6 +200,23 @@ mod tests {
         };
         let found = rough(outliers).deviation();
         assert!((found / 1e-3 - 1.0).abs() < 0.15, "{found}");
+    }
+
+    #[test]
+    fn what_longer_rows_leave_less_of_is_no_noise() {
+        // Two samples a radian: nine in a row leave a tenth of what seven do.
+        let rare = |noise: f64| {
+            let mut random = Normal::seeded(6);
+            let times: Vec<f64> = (0..400).map(f64::from).collect();
+            let readings: Vec<DVec3> =
+                times.iter().map(|t| DVec3::splat((0.5 * t).sin() + noise * random.draw())).collect();
+            let mut all = Rough::default();
+            all.add(&times, |k| Some(readings[k]), |_| vec![DVec3::X]);
+            all.noise()
+        };
+        assert_eq!(rare(0.0), None);
+        let found = rare(0.01).unwrap();
+        assert!((found / 0.01 - 1.0).abs() < 0.15, "{found}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod motor;
 #[cfg(feature = "noise")]
 mod noise;
 mod palm;
+mod picked;
 mod record;
 mod simulated;
 mod three_planes;

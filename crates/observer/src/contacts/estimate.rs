@@ -3,6 +3,7 @@ use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::explanations::explanations;
 use super::joint::pose_errors;
+use super::lost::is_lost;
 use super::mode_odds::{EstimatedModes, mode_odds};
 use super::modes::by_ratio;
 use super::options::{ContactEstimateError, ContactOptions, check};
@@ -117,12 +118,17 @@ pub fn estimate_contacts(
     let record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
-    let source = Source { log, options, units };
+    let rough = options.as_rough(log, &units);
+    let record = rough.as_ref().and_then(|options| Record::new(log, options)).unwrap_or(record);
+    let source = Source { log, options: rough.as_ref().unwrap_or(options), units };
     let mut record = source.with_blows(record);
-    match modes {
-        Some(modes) => Ok(source.with_modes(&mut record, modes.to_vec(), true)?.0),
-        None => source.with_estimated_modes(&mut record),
-    }
+    let mut found = match modes {
+        Some(modes) => source.with_modes(&mut record, modes.to_vec(), true)?.0,
+        None => source.with_estimated_modes(&mut record)?,
+    };
+    found.evidence.rougher = rough.map_or(1.0, |rough| rough.noise.contact / options.noise.contact);
+    let lost = options.suspects && is_lost(found.evidence.settled, log.times(), &units);
+    Ok(if lost { found.explained_by_beginning(log, modes, (options, &units)) } else { found })
 }
 
 /// What an estimate is made from.
@@ -225,8 +231,9 @@ impl Source<'_> {
         let (duration, needed) = (log.times[log.times.len() - 1] - log.times[0], shortest * units.time());
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let short = short.or_else(|| too_sparse(&log.times, SPARSEST * units.time()));
-        let told = !exact && thinned.is_none() && uncontradicted;
         let evidence = stage.evidence(log, &covariances);
+        let lost = is_lost(evidence.settled, &log.times, &units);
+        let told = !exact && thinned.is_none() && uncontradicted && !lost;
         let (wrong, errors) = match options.suspects && told {
             true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),
             false => Default::default(),
@@ -332,6 +339,7 @@ impl Stage<'_> {
             misfit: solved.misfit(),
             lasting: solved.lasting(problem),
             unresolved: if problem.exact { 0.0 } else { log.unresolved().sqrt() },
+            rougher: 1.0,
             iterations: [*before, before + solved.iterations],
             settled: solved.settled && covariances.mended <= MENDED,
         }

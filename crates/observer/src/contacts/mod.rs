@@ -45,6 +45,7 @@ mod gaps;
 mod impulses;
 mod joint;
 mod link;
+mod lost;
 mod mode_odds;
 mod modes;
 mod noise;

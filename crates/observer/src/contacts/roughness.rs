@@ -1,12 +1,23 @@
 //! Noise of the sensors from the roughness of their own readings.
 
 use super::noise::{ContactNoiseLevel, ImpulseNoise};
+use super::options::ContactOptions;
+use super::problem::Units;
 use crate::roughness::Rough;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
 /// Creep as a share of the natural speed `sqrt(g l)`.
 const CREEP: f64 = 3e-5;
+impl ContactOptions {
+    /// With the scatter of a log's contacts for a stated noise that is less: of taxels, of a sensor that is worse than its sheet. None where the noise is
+    /// no less than stated, or none is stated.
+    pub(super) fn as_rough(&self, log: &ContactLog, units: &Units) -> Option<Self> {
+        let rough = self.noise.limits(units).then(|| contacts(log, self.planar))?;
+        let contact = rough.noise().filter(|rough| *rough > self.noise.contact)?;
+        Some(Self { noise: ContactNoiseLevel { contact, ..self.noise }, ..*self })
+    }
+}
 
 impl ContactNoiseLevel {
     /// What contact conditions are taken to be off by at first where it is not known, m/s, under `gravity`, m/s^2, of a body of the size `length`,
@@ -31,19 +42,13 @@ impl ContactNoiseLevel {
     /// `floor` (m/s) is taken as it is. In a log of the plane of x and z nothing is felt along y.
     #[must_use]
     pub fn by_roughness(log: &ContactLog, floor: f64, planar: bool) -> Self {
-        let [mut contacts, mut forces, mut impulses] = [(); 3].map(|()| Rough::default());
+        let [mut forces, mut impulses] = [(); 2].map(|()| Rough::default());
         for palm in log.palms() {
-            let normal = |k: usize| palm.touch(k).map_or(DVec3::Z, |touch| touch.n.get());
-            let own = |k: usize| palm.motion(k).pose.R_WP.inverse();
-            let tangents = |k: usize| match planar {
-                true => vec![own(k) * normal(k).cross(DVec3::Y)],
-                false => <[DVec3; 2]>::from((own(k) * normal(k)).any_orthonormal_pair()).to_vec(),
-            };
+            let (normal, own) = (|k| normal(palm, k), |k| own(palm, k));
             let everywhere = || match planar {
                 true => vec![DVec3::X, DVec3::Z],
                 false => DVec3::AXES.to_vec(),
             };
-            contacts.add(log.times(), |k| in_palm(palm, k), tangents);
             let add = |rough: &mut Rough, axes, reading: &dyn Fn(usize) -> Option<SensedForce>| {
                 let touched = |k: usize| reading(k).filter(|_| palm.touch(k).is_some());
                 match axes {
@@ -64,14 +69,31 @@ impl ContactNoiseLevel {
         let [force_fixed, force_share] = forces.growing();
         let [fixed, share] = impulses.growing();
         let impulse = (!impulses.least().is_empty()).then_some(ImpulseNoise { fixed, share });
-        Self { contact: contacts.deviation(), force_fixed, force_share, impulse, floor }
+        Self { contact: contacts(log, planar).deviation(), force_fixed, force_share, impulse, floor }
     }
 }
 
-/// The contact point as it is read: in the palm's own axes.
-fn in_palm(palm: &LoggedPalm, k: usize) -> Option<DVec3> {
-    let (touch, pose) = (palm.touch(k)?, palm.motion(k).pose);
-    Some(pose.R_WP.inverse() * (touch.p_WC - pose.p_WP))
+/// What is rough about contact points as they are read: in the palms' own axes.
+fn contacts(log: &ContactLog, planar: bool) -> Rough {
+    let mut rough = Rough::default();
+    for palm in log.palms() {
+        let point = |k| Some(own(palm, k) * (palm.touch(k)?.p_WC - palm.motion(k).pose.p_WP));
+        let tangents = |k| match planar {
+            true => vec![own(palm, k) * normal(palm, k).cross(DVec3::Y)],
+            false => <[DVec3; 2]>::from((own(palm, k) * normal(palm, k)).any_orthonormal_pair()).to_vec(),
+        };
+        rough.add(log.times(), point, tangents);
+    }
+    rough
+}
+
+/// To the palm's own axes.
+fn own(palm: &LoggedPalm, k: usize) -> DQuat {
+    palm.motion(k).pose.R_WP.inverse()
+}
+
+fn normal(palm: &LoggedPalm, k: usize) -> DVec3 {
+    palm.touch(k).map_or(DVec3::Z, |touch| touch.n.get())
 }
 
 /// Root mean square of the distance of contacts from the mean of those at the same time, m: about the size of the object. None

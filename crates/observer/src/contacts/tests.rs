@@ -17,6 +17,7 @@ mod impulses;
 mod known;
 mod lasting;
 mod mode_odds;
+mod rough;
 mod steady;
 mod suspects;
 

@@ -33,6 +33,8 @@ pub struct ContactEvidence {
     pub lasting: f64,
     /// Deviations by which an estimate may be off since forces change faster than they are sampled: 0 where noise hides none of it.
     pub unresolved: f64,
+    /// What the contacts scatter by over their stated noise where that is more, and was taken in its place: else 1.
+    pub rougher: f64,
     /// Linearisations: coarse, all.
     pub iterations: [usize; 2],
     /// Whether less than half a standard deviation was left to gain.

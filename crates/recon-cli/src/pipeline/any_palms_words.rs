@@ -74,6 +74,12 @@ pub(super) fn wider(evidence: &ContactEvidence) -> String {
             " Forces change faster than they are sampled: deviations are {between:.1} times wider for it, and a higher rate tells more."
         );
     }
+    if evidence.rougher > WIDER {
+        words += &format!(
+            " Contacts scatter {:.1} times as much as is stated, and count as noisy as that.",
+            evidence.rougher
+        );
+    }
     words
 }
 
