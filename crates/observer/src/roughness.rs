@@ -9,6 +9,9 @@ const IN_A_ROW: [usize; 3] = [5, 7, 9];
 const LESS: f64 = 0.8;
 /// Median of |x| for a standard normal x.
 const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+/// Twice the deviation of a standard deviation by the median of some numbers, times the root of how many: 1.2 of independent ones, and each of these hangs
+/// together with those of the rows beside its own.
+const CHANCE: f64 = 3.3;
 /// Groups of forces by their size, at most, and the readings in one, at least.
 const GROUPS: usize = 12;
 const LEAST_IN_GROUP: usize = 40;
@@ -55,15 +58,44 @@ impl Rough {
         }
     }
 
+    /// In units that differ by the size of a reading. Of no readings where the usual one is zero.
+    pub(crate) fn over(self, unit: impl Fn(f64) -> f64) -> Self {
+        let mut sizes: Vec<f64> = self.all[0].iter().map(|(size, _)| *size).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        let usual = sizes.get(sizes.len() / 2).map_or(0.0, |size| unit(*size));
+        if usual <= 0.0 {
+            return Self::default();
+        }
+        let of = |(size, rough): (f64, f64)| (size, rough / unit(size).max(f64::MIN_POSITIVE));
+        Self {
+            all: self.all.map(|all| all.into_iter().map(of).collect()),
+            steps: self.steps.into_iter().map(|step| step / usual).collect(),
+        }
+    }
+
     /// Standard deviation of the noise.
     pub(crate) fn deviation(&self) -> f64 {
         of(self.least()).max(self.counted())
     }
 
-    /// The same where rows longer than those that leave the least of readings would leave no less: None where what is left may be the motion's.
+    /// The same of white noise that makes means of readings as noisy. None where longer rows would leave less: what is left may be the motion's.
+    ///
+    /// A reading that a sensor which counts in steps repeats tells nothing new: the mean of many is as good as that of the others.
     pub(crate) fn noise(&self) -> Option<f64> {
         let [.., shorter, longest] = &self.all;
-        (of(longest) >= LESS * of(shorter)).then(|| self.deviation())
+        let (least, counted, [repeated, all]) = (of(self.least()), self.counted(), self.repeated());
+        let steady = of(longest) >= LESS * of(shorter);
+        if counted > least {
+            // Some step is no repetition where one is counted.
+            Some(counted * (all / (all - repeated)).sqrt())
+        } else {
+            steady.then_some(least)
+        }
+    }
+
+    /// By how much chance alone may make the noise larger, as a share of it.
+    pub(crate) fn chance(&self) -> f64 {
+        CHANCE / (self.least().len().max(1) as f64).sqrt()
     }
 
     /// What is rough over so few readings in a row that more of them would leave as much.
@@ -109,11 +141,21 @@ impl Rough {
 
     /// Of sensors that count in steps, the deviation of what that leaves out.
     fn counted(&self) -> f64 {
-        let rounding = ROUNDING * self.steps.iter().copied().fold(0.0, f64::max);
-        let repeated = self.steps.iter().filter(|step| **step <= rounding).count() as f64;
+        let rounding = self.rounding();
+        let [repeated, all] = self.repeated();
         let step = self.steps.iter().copied().filter(|step| *step > rounding).reduce(f64::min);
-        let counts = repeated >= REPEATED * self.steps.len() as f64;
-        step.filter(|_| counts).map_or(0.0, |step| step / 12.0_f64.sqrt())
+        step.filter(|_| repeated >= REPEATED * all).map_or(0.0, |step| step / 12.0_f64.sqrt())
+    }
+
+    /// How many readings are those before them, and of how many.
+    fn repeated(&self) -> [f64; 2] {
+        let rounding = self.rounding();
+        let repeated = self.steps.iter().filter(|step| **step <= rounding).count();
+        [repeated as f64, self.steps.len() as f64]
+    }
+
+    fn rounding(&self) -> f64 {
+        ROUNDING * self.steps.iter().copied().fold(0.0, f64::max)
     }
 }
 
@@ -233,7 +275,11 @@ mod tests {
             let _ = random;
             (smooth * 50.0).round() / 50.0 - smooth
         };
-        let found = rough(counted).deviation();
-        assert!((found / (0.02 / 12.0_f64.sqrt()) - 1.0).abs() < 0.01, "{found}");
+        let all = rough(counted);
+        let (found, step) = (all.deviation(), 0.02 / 12.0_f64.sqrt());
+        assert!((found / step - 1.0).abs() < 0.01, "{found}");
+        // Eight seconds at speeds of 0.64, 0.64 and 0.3 in the mean: of 24000 readings 650 are not those before them.
+        let alike = (24_000.0_f64 / 650.0).sqrt();
+        assert!((all.noise().unwrap() / (step * alike) - 1.0).abs() < 0.05, "{:?}", all.noise());
     }
 }

@@ -126,7 +126,7 @@ pub fn estimate_contacts(
         Some(modes) => source.with_modes(&mut record, modes.to_vec(), true)?.0,
         None => source.with_estimated_modes(&mut record)?,
     };
-    found.evidence.rougher = rough.map_or(1.0, |rough| rough.noise.contact / options.noise.contact);
+    found.evidence.rougher = rough.map_or([1.0; 2], |rough| rough.noise.over(&options.noise));
     let lost = options.suspects && is_lost(found.evidence.settled, log.times(), &units);
     Ok(if lost { found.explained_by_beginning(log, modes, (options, &units)) } else { found })
 }
@@ -339,7 +339,7 @@ impl Stage<'_> {
             misfit: solved.misfit(),
             lasting: solved.lasting(problem),
             unresolved: if problem.exact { 0.0 } else { log.unresolved().sqrt() },
-            rougher: 1.0,
+            rougher: [1.0; 2],
             iterations: [*before, before + solved.iterations],
             settled: solved.settled && covariances.mended <= MENDED,
         }

@@ -34,6 +34,13 @@ impl ContactNoiseLevel {
         self.contact > self.floor * units.time()
     }
 
+    /// By how many times contacts and forces are noisier than another one of the same kind says; 1 of what has no noise there.
+    pub(super) fn over(&self, other: &Self) -> [f64; 2] {
+        let force = |of: &Self| of.force_fixed.hypot(of.force_share);
+        let times = |noise: f64, other: f64| if other > 0.0 { noise / other } else { 1.0 };
+        [times(self.contact, other.contact), times(force(self), force(other))]
+    }
+
     /// Standard deviation of each axis of the force `f`, N.
     pub(super) fn force(&self, f: DVec3) -> f64 {
         self.force_fixed.hypot(self.force_share * f.length())

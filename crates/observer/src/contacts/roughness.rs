@@ -9,13 +9,26 @@ use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
 /// Creep as a share of the natural speed `sqrt(g l)`.
 const CREEP: f64 = 3e-5;
+
 impl ContactOptions {
-    /// With the scatter of a log's contacts for a stated noise that is less: of taxels, of a sensor that is worse than its sheet. None where the noise is
-    /// no less than stated, or none is stated.
+    /// With the noise that contacts and forces of a log have where less is stated: of taxels, of a sensor that is worse than its sheet. None where it is
+    /// no more than stated, or none is stated.
     pub(super) fn as_rough(&self, log: &ContactLog, units: &Units) -> Option<Self> {
-        let rough = self.noise.limits(units).then(|| contacts(log, self.planar))?;
-        let contact = rough.noise().filter(|rough| *rough > self.noise.contact)?;
-        Some(Self { noise: ContactNoiseLevel { contact, ..self.noise }, ..*self })
+        let stated = self.noise;
+        if !stated.limits(units) {
+            return None;
+        }
+        let more = |rough: Rough| rough.noise().filter(|noise| *noise > 1.0 + rough.chance()).unwrap_or(1.0);
+        let of_contacts = more(contacts(log, self.planar).over(|_| stated.contact));
+        let of_forces =
+            more(forces(log, self.planar, LoggedPalm::force).over(|f| stated.force(DVec3::X * f)));
+        let noise = ContactNoiseLevel {
+            contact: stated.contact * of_contacts,
+            force_fixed: stated.force_fixed * of_forces,
+            force_share: stated.force_share * of_forces,
+            ..stated
+        };
+        (noise != stated).then_some(Self { noise, ..*self })
     }
 }
 
@@ -42,30 +55,8 @@ impl ContactNoiseLevel {
     /// `floor` (m/s) is taken as it is. In a log of the plane of x and z nothing is felt along y.
     #[must_use]
     pub fn by_roughness(log: &ContactLog, floor: f64, planar: bool) -> Self {
-        let [mut forces, mut impulses] = [(); 2].map(|()| Rough::default());
-        for palm in log.palms() {
-            let (normal, own) = (|k| normal(palm, k), |k| own(palm, k));
-            let everywhere = || match planar {
-                true => vec![DVec3::X, DVec3::Z],
-                false => DVec3::AXES.to_vec(),
-            };
-            let add = |rough: &mut Rough, axes, reading: &dyn Fn(usize) -> Option<SensedForce>| {
-                let touched = |k: usize| reading(k).filter(|_| palm.touch(k).is_some());
-                match axes {
-                    // Without friction a force is along the normal, and across it nothing is rough.
-                    Some(SensedAxes::Three) if palm.friction() != Some(0.0) => {
-                        rough.add(log.times(), |k| Some(own(k) * touched(k)?.vector), |_| everywhere());
-                    }
-                    Some(_) => {
-                        let along = |k: usize| Some(DVec3::X * touched(k)?.vector.dot(normal(k)));
-                        rough.add(log.times(), along, |_| vec![DVec3::X]);
-                    }
-                    None => {}
-                }
-            };
-            add(&mut forces, palm.force_axes(), &|k| palm.force(k));
-            add(&mut impulses, palm.impulse_axes(), &|k| palm.impulse(k));
-        }
+        let [forces, impulses] =
+            [LoggedPalm::force, LoggedPalm::impulse].map(|read| forces(log, planar, read));
         let [force_fixed, force_share] = forces.growing();
         let [fixed, share] = impulses.growing();
         let impulse = (!impulses.least().is_empty()).then_some(ImpulseNoise { fixed, share });
@@ -83,6 +74,25 @@ fn contacts(log: &ContactLog, planar: bool) -> Rough {
             false => <[DVec3; 2]>::from((own(palm, k) * normal(palm, k)).any_orthonormal_pair()).to_vec(),
         };
         rough.add(log.times(), point, tangents);
+    }
+    rough
+}
+
+/// What is rough about forces or impulses as they are read: in the palms' own axes.
+fn forces(log: &ContactLog, planar: bool, read: impl Fn(&LoggedPalm, usize) -> Option<SensedForce>) -> Rough {
+    let mut rough = Rough::default();
+    for palm in log.palms() {
+        let touched = |k: usize| read(palm, k).filter(|_| palm.touch(k).is_some());
+        let axes = (0..log.times().len()).find_map(touched).map(|force| force.axes);
+        let all = |k: usize| touched(k).map(|force| force.vector);
+        // Without friction a force is along the normal, and across it nothing is rough.
+        if axes == Some(SensedAxes::Three) && palm.friction() != Some(0.0) {
+            let everywhere = if planar { vec![DVec3::X, DVec3::Z] } else { DVec3::AXES.to_vec() };
+            rough.add(log.times(), |k| Some(own(palm, k) * all(k)?), |_| everywhere.clone());
+        } else {
+            let along = |k: usize| Some(DVec3::X * all(k)?.dot(normal(palm, k)));
+            rough.add(log.times(), along, |_| vec![DVec3::X]);
+        }
     }
     rough
 }

@@ -33,8 +33,8 @@ pub struct ContactEvidence {
     pub lasting: f64,
     /// Deviations by which an estimate may be off since forces change faster than they are sampled: 0 where noise hides none of it.
     pub unresolved: f64,
-    /// What the contacts scatter by over their stated noise where that is more, and was taken in its place: else 1.
-    pub rougher: f64,
+    /// How many times as noisy as stated contacts and forces count: they scatter by more, or repeat themselves from sample to sample. Else 1.
+    pub rougher: [f64; 2],
     /// Linearisations: coarse, all.
     pub iterations: [usize; 2],
     /// Whether less than half a standard deviation was left to gain.

@@ -74,11 +74,12 @@ pub(super) fn wider(evidence: &ContactEvidence) -> String {
             " Forces change faster than they are sampled: deviations are {between:.1} times wider for it, and a higher rate tells more."
         );
     }
-    if evidence.rougher > WIDER {
-        words += &format!(
-            " Contacts scatter {:.1} times as much as is stated, and count as noisy as that.",
-            evidence.rougher
-        );
+    for (what, times) in ["Contacts", "Forces"].into_iter().zip(evidence.rougher) {
+        if times > WIDER {
+            words += &format!(
+                " {what} count as {times:.1} times as noisy as stated: they scatter by more, or repeat themselves from sample to sample."
+            );
+        }
     }
     words
 }

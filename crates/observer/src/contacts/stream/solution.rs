@@ -87,7 +87,7 @@ impl Of<'_> {
             misfit: solved.misfit(),
             lasting: self.lasting,
             unresolved: self.unresolved,
-            rougher: 1.0,
+            rougher: [1.0; 2],
             iterations: [0, solved.iterations],
             settled: solved.settled,
         }

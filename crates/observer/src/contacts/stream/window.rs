@@ -78,6 +78,8 @@ pub(super) struct Before {
 /// The latest samples, and the motion that they were last found to have.
 pub(super) struct Window {
     pub(super) palms: Vec<StreamPalm>,
+    /// As they were given, and with the noise of contacts as they scatter in the window.
+    stated: ContactOptions,
     pub(super) options: ContactOptions,
     sample_rate: f64,
     /// Whether modes are to be told and nothing does yet.
@@ -102,6 +104,7 @@ impl Window {
         Self {
             palms,
             untold: options.mode_odds,
+            stated: options,
             options,
             sample_rate,
             samples: VecDeque::new(),
@@ -137,6 +140,7 @@ impl Window {
         };
         let units = cold::units(&record, self.options.gravity, length);
         let natural = length / units.speed;
+        self.options = self.stated.as_rough(&log, &units).unwrap_or(self.stated);
         outcome.natural = Some(natural);
         self.natural = natural;
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);

@@ -7,21 +7,47 @@ use crate::reliability::{Reason, Reliability};
 
 /// Ten times as noisy as stated windows are of one sample each, and a search from nothing finds no motion of so many nodes.
 #[test]
-fn contacts_count_as_noisy_as_they_scatter() {
+fn readings_count_as_noisy_as_they_scatter() {
     let exact = normal_only(&rubbed(0.4, 500.0, 0.0));
-    for times in [1.0, 10.0] {
+    for [of_contacts, of_forces] in [[1.0, 1.0], [10.0, 1.0], [1.0, 4.0]] {
         let found = |seed| {
-            let log = noisy(&exact, &noise(times * 2e-5, 0.004), seed);
-            let found = estimate_contacts(&log, None, &options(noise(2e-5, 0.004))).unwrap();
-            assert!(found.reliability.is_reliable(), "{times}, {seed}: {:?}", found.reliability);
-            // Of 1200 numbers that hang together the median tells a deviation to a twentieth.
-            let rougher = found.evidence.rougher;
-            assert!((times.max(1.0)..1.2 * times).contains(&(rougher * 1.1)), "{times}, {seed}: {rougher}");
+            let log = noisy(&exact, &noise(of_contacts * 2e-5, of_forces * 0.002), seed);
+            let found = estimate_contacts(&log, None, &options(noise(2e-5, 0.002))).unwrap();
+            assert!(found.reliability.is_reliable(), "{seed}: {:?}", found.reliability);
+            // Of 1200 numbers on contacts and 600 on forces, which hang together, medians tell deviations to a twentieth and a fourteenth.
+            for (rougher, times, within) in
+                [(found.evidence.rougher[0], of_contacts, 0.1), (found.evidence.rougher[1], of_forces, 0.2)]
+            {
+                assert!((rougher / times - 1.0).abs() < within, "{seed}: {rougher} for {times}");
+            }
             errors(&found, &log).0 / 12.0
         };
         let mean = (0..4).map(found).sum::<f64>() / 4.0;
         assert!((0.2..2.5).contains(&mean), "squared errors are {mean} of what is said");
     }
+}
+
+/// Contacts at taxels a fiftieth of the size apart, where a tenth of that is stated as noise.
+#[test]
+fn contacts_at_taxels_are_those_of_a_noisy_sensor() {
+    let pitch = 0.02 * SIZE;
+    let exact = normal_only(&rubbed(0.6, 500.0, 0.0));
+    let told = noisy(&exact, &noise(4e-6, 0.002), 4);
+    let taxels = with_records(&told, |i, mut record| {
+        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
+        for (k, point) in points.iter_mut().enumerate() {
+            let pose = told.palms()[i].motion(k).pose;
+            // Of a plane, whose points have no height.
+            let at = |p: DVec3| pose.R_WP.inverse() * (p - pose.p_WP);
+            *point = point.map(|p| pose.p_WP + pose.R_WP * ((at(p) / pitch).round() * pitch));
+        }
+        record
+    });
+    let found = estimate_contacts(&taxels, None, &options(noise(0.1 * pitch, 0.002))).unwrap();
+    assert!(found.reliability.is_reliable(), "{:?}", found.reliability);
+    assert!(found.evidence.rougher[0] > 1.0 / (0.1 * 12.0_f64.sqrt()), "{:?}", found.evidence);
+    let mean = errors(&found, &taxels).0 / 12.0;
+    assert!(mean < 4.0, "squared errors are {mean} of what is said");
 }
 
 /// Over forty natural times a force that is told 5 % too large leaves no motion: what is wrong is told by the first eight.

@@ -205,7 +205,7 @@ fn estimate() -> EstimateData {
             misfit: 1.0,
             lasting: 1.0,
             unresolved: 0.0,
-            rougher: 1.0,
+            rougher: [1.0; 2],
             iterations: [5, 9],
             settled: true,
         },
