@@ -40,9 +40,10 @@ impl Rough {
         axes: impl Fn(usize) -> Vec<DVec3>,
     ) {
         let readings: Vec<Option<DVec3>> = (0..times.len()).map(reading).collect();
+        let axes: Vec<Vec<DVec3>> = (0..times.len()).map(axes).collect();
         for (k, pair) in readings.windows(2).enumerate() {
             if let [Some(a), Some(b)] = pair {
-                self.steps.extend(axes(k).into_iter().map(|axis| (*b - *a).dot(axis).abs()));
+                self.steps.extend(axes[k].iter().map(|axis| (*b - *a).dot(*axis).abs()));
             }
         }
         for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
@@ -53,7 +54,7 @@ impl Rough {
                 let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * *weight));
                 let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
                 let size = readings[middle].map_or(0.0, DVec3::length);
-                all.extend(axes(middle).into_iter().map(|axis| (size, rough.dot(axis).abs())));
+                all.extend(axes[middle].iter().map(|axis| (size, rough.dot(*axis).abs())));
             }
         }
     }
@@ -78,36 +79,39 @@ impl Rough {
         of(self.least()).max(self.counted())
     }
 
-    /// The same of white noise that makes means of readings as noisy. None where longer rows would leave less: what is left may be the motion's.
+    /// The same in units of what is stated, as white noise that makes means of readings as noisy, where it is more than one beyond chance. None where
+    /// longer rows would leave less: what is left may be the motion's.
     ///
     /// A reading that a sensor which counts in steps repeats tells nothing new: the mean of many is as good as that of the others.
-    pub(crate) fn noise(&self) -> Option<f64> {
-        let [.., shorter, longest] = &self.all;
-        let (least, counted, [repeated, all]) = (of(self.least()), self.counted(), self.repeated());
-        let steady = of(longest) >= LESS * of(shorter);
-        if counted > least {
+    pub(crate) fn beyond_chance(&self) -> Option<f64> {
+        let (counted, deviations) = (self.counted(), self.deviations());
+        let [.., shorter, longest] = deviations;
+        let least = deviations[self.least_of(&deviations)];
+        let noise = if counted > least {
+            let [repeated, all] = self.repeated();
             // Some step is no repetition where one is counted.
             Some(counted * (all / (all - repeated)).sqrt())
         } else {
-            steady.then_some(least)
-        }
-    }
-
-    /// By how much chance alone may make the noise larger, as a share of it.
-    pub(crate) fn chance(&self) -> f64 {
-        CHANCE / (self.least().len().max(1) as f64).sqrt()
+            (longest >= LESS * shorter).then_some(least)
+        };
+        let chance = CHANCE / (self.all[0].len().max(1) as f64).sqrt();
+        noise.filter(|noise| *noise > 1.0 + chance)
     }
 
     /// What is rough over so few readings in a row that more of them would leave as much.
     pub(crate) fn least(&self) -> &[(f64, f64)] {
-        let [first, rest @ ..] = &self.all;
-        let mut least = first;
-        for all in rest.iter().filter(|all| !all.is_empty()) {
-            if of(all) < LESS * of(least) {
-                least = all;
-            }
-        }
-        least
+        &self.all[self.least_of(&self.deviations())]
+    }
+
+    fn deviations(&self) -> [f64; IN_A_ROW.len()] {
+        self.all.each_ref().map(|all| of(all))
+    }
+
+    /// Which of these rows that is.
+    fn least_of(&self, deviations: &[f64; IN_A_ROW.len()]) -> usize {
+        let less =
+            |least: usize, i: usize| !self.all[i].is_empty() && deviations[i] < LESS * deviations[least];
+        (1..IN_A_ROW.len()).fold(0, |least, i| if less(least, i) { i } else { least })
     }
 
     /// Of noise that grows with the readings: its fixed part, and its share of them.
@@ -254,11 +258,12 @@ mod tests {
                 times.iter().map(|t| DVec3::splat((0.5 * t).sin() + noise * random.draw())).collect();
             let mut all = Rough::default();
             all.add(&times, |k| Some(readings[k]), |_| vec![DVec3::X]);
-            all.noise()
+            all.over(|_| 5e-3).beyond_chance()
         };
         assert_eq!(rare(0.0), None);
+        assert_eq!(rare(4e-3), None);
         let found = rare(0.01).unwrap();
-        assert!((found / 0.01 - 1.0).abs() < 0.15, "{found}");
+        assert!((found / 2.0 - 1.0).abs() < 0.15, "{found}");
     }
 
     #[test]
@@ -280,6 +285,7 @@ mod tests {
         assert!((found / step - 1.0).abs() < 0.01, "{found}");
         // Eight seconds at speeds of 0.64, 0.64 and 0.3 in the mean: of 24000 readings 650 are not those before them.
         let alike = (24_000.0_f64 / 650.0).sqrt();
-        assert!((all.noise().unwrap() / (step * alike) - 1.0).abs() < 0.05, "{:?}", all.noise());
+        let times = all.over(|_| step).beyond_chance().unwrap();
+        assert!((times / alike - 1.0).abs() < 0.05, "{times}");
     }
 }

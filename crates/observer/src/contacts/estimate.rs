@@ -118,7 +118,8 @@ pub fn estimate_contacts(
     let record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
-    let rough = options.as_rough(log, &units);
+    let rougher = options.rougher(log, &units);
+    let rough = rougher.map(|times| options.with_noise(times));
     let record = rough.as_ref().and_then(|options| Record::new(log, options)).unwrap_or(record);
     let source = Source { log, options: rough.as_ref().unwrap_or(options), units };
     let mut record = source.with_blows(record);
@@ -126,7 +127,7 @@ pub fn estimate_contacts(
         Some(modes) => source.with_modes(&mut record, modes.to_vec(), true)?.0,
         None => source.with_estimated_modes(&mut record)?,
     };
-    found.evidence.rougher = rough.map_or([1.0; 2], |rough| rough.noise.over(&options.noise));
+    found.evidence.rougher = rougher.unwrap_or([1.0; 2]);
     let lost = options.suspects && is_lost(found.evidence.settled, log.times(), &units);
     Ok(if lost { found.explained_by_beginning(log, modes, (options, &units)) } else { found })
 }

@@ -34,11 +34,11 @@ impl ContactNoiseLevel {
         self.contact > self.floor * units.time()
     }
 
-    /// By how many times contacts and forces are noisier than another one of the same kind says; 1 of what has no noise there.
-    pub(super) fn over(&self, other: &Self) -> [f64; 2] {
-        let force = |of: &Self| of.force_fixed.hypot(of.force_share);
-        let times = |noise: f64, other: f64| if other > 0.0 { noise / other } else { 1.0 };
-        [times(self.contact, other.contact), times(force(self), force(other))]
+    /// With contacts and forces so many times as noisy, as [`ContactEvidence::rougher`](crate::contacts::ContactEvidence::rougher) tells.
+    #[must_use]
+    pub fn times(self, [contacts, forces]: [f64; 2]) -> Self {
+        let (force_fixed, force_share) = (forces * self.force_fixed, forces * self.force_share);
+        Self { contact: contacts * self.contact, force_fixed, force_share, ..self }
     }
 
     /// Standard deviation of each axis of the force `f`, N.

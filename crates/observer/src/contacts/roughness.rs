@@ -11,24 +11,19 @@ use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 const CREEP: f64 = 3e-5;
 
 impl ContactOptions {
-    /// With the noise that contacts and forces of a log have where less is stated: of taxels, of a sensor that is worse than its sheet. None where it is
-    /// no more than stated, or none is stated.
-    pub(super) fn as_rough(&self, log: &ContactLog, units: &Units) -> Option<Self> {
+    /// How many times as noisy as stated contacts and forces of a log are, where they are by more than chance makes: those of taxels, of a sensor that is
+    /// worse than its sheet. None where noise is not what conditions are off by.
+    pub(super) fn rougher(&self, log: &ContactLog, units: &Units) -> Option<[f64; 2]> {
         let stated = self.noise;
-        if !stated.limits(units) {
-            return None;
-        }
-        let more = |rough: Rough| rough.noise().filter(|noise| *noise > 1.0 + rough.chance()).unwrap_or(1.0);
-        let of_contacts = more(contacts(log, self.planar).over(|_| stated.contact));
-        let of_forces =
-            more(forces(log, self.planar, LoggedPalm::force).over(|f| stated.force(DVec3::X * f)));
-        let noise = ContactNoiseLevel {
-            contact: stated.contact * of_contacts,
-            force_fixed: stated.force_fixed * of_forces,
-            force_share: stated.force_share * of_forces,
-            ..stated
-        };
-        (noise != stated).then_some(Self { noise, ..*self })
+        let contacts = contacts(log, self.planar).over(|_| stated.contact);
+        let forces = forces(log, self.planar, LoggedPalm::force).over(|f| stated.force(DVec3::X * f));
+        let rougher = [contacts, forces].map(|rough| rough.beyond_chance().unwrap_or(1.0));
+        (rougher != [1.0; 2] && stated.times(rougher).limits(units)).then_some(rougher)
+    }
+
+    /// With contacts and forces so many times as noisy.
+    pub(super) fn with_noise(&self, times: [f64; 2]) -> Self {
+        Self { noise: self.noise.times(times), ..*self }
     }
 }
 

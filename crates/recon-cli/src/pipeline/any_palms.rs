@@ -204,7 +204,8 @@ pub(crate) fn estimate_any_palms(
     Ok(AnyPalms { data, bounds, contact_noise: options.noise.contact, choice })
 }
 
-/// The log without its truth, its truth, and the estimate: by the least model that serves where an accuracy is wanted, which then changes the options.
+/// The log without its truth, its truth, and the estimate: by the least model that serves where an accuracy is wanted, which then changes the options, as
+/// readings do that are noisier than stated: bounds count on their noise.
 type Modelled = (ContactLog, Option<Vec<TrueState>>, ContactEstimate, Option<Choice>);
 
 fn modelled(
@@ -219,10 +220,12 @@ fn modelled(
     let Some(wanted) = accuracy else {
         let (log, truth) = log.split_truth();
         let estimate = estimate_contacts(&log, None, options).map_err(refused)?;
+        options.noise = options.noise.times(estimate.evidence.rougher);
         return Ok((log, truth, estimate, None));
     };
     let least = least_estimate(&log.clone().split_truth().0, options, wanted).map_err(refused)?;
     *options = least.options;
+    options.noise = options.noise.times(least.estimate.evidence.rougher);
     let (log, truth) = one_of(&log, least.every)?.split_truth();
     Ok((log, truth, least.estimate, Some(least.choice)))
 }

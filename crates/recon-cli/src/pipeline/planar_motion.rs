@@ -67,6 +67,7 @@ pub(crate) fn planar_motion(
             (log, least.estimate, least.is_of_known_body, Some(least.choice))
         }
     };
+    let noise = noise.times(estimate.evidence.rougher);
     let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
     Ok(PlanarMotion { log, noise, estimate, known_body, bounds, of_bounds, choice })
 }

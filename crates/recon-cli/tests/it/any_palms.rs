@@ -207,3 +207,36 @@ fn what_is_neither_three_planes_nor_has_all_forces_is_refused_by_name() {
     let run = scratch.run(&rubbed);
     assert!(run.code == Some(4) && run.stdout.contains("Do not rely on this result"), "{}", run.stdout);
 }
+
+/// Contacts that are told at taxels, where a tenth of their pitch is stated as noise: the motion is relied on, and margins of the bounds are those of what
+/// is read.
+#[test]
+fn contacts_that_scatter_by_more_than_stated_are_survived_and_told() {
+    let scratch = scratch_with_log("taxels");
+    // A hundredth of the object's size.
+    let pitch = 0.02;
+    let table = scratch.read("log.csv");
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let told = |line: &str| {
+        let one = |(name, value): (&&str, &str)| match name.starts_with('s') {
+            true => ((value.parse::<f64>().unwrap() / pitch).round() * pitch).to_string(),
+            false => value.to_owned(),
+        };
+        header.iter().zip(line.split(',')).map(one).collect::<Vec<_>>().join(",")
+    };
+    let rows: Vec<String> = std::iter::once(header.join(",")).chain(lines.map(told)).collect();
+    scratch.write("taxels.csv", &(rows.join("\n") + "\n"));
+    let known = scene().split("[simulation]").next().unwrap().to_owned();
+    let sensors = format!("\n[sensors]\ncontact_std = {}\nforce_std = 0.1\n", 0.1 * pitch);
+    scratch.write("known.toml", &(known.split("[sensors]").next().unwrap().to_owned() + &sensors));
+    let (code, errors, summary) = reconstruct(&scratch, "taxels.csv", "known.toml", "out");
+    assert_eq!(code, Some(0), "{errors}");
+    let verdict = summary["verdict"].to_string();
+    assert!(verdict.contains("Contacts count as"), "{verdict}");
+    // Margins of at least what rounding to taxels is off by.
+    let warnings = summary["warnings"].to_string();
+    let noise =
+        warnings.split("noisy by ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    assert!(noise.is_some_and(|noise| noise > pitch / 12.0_f64.sqrt()), "{warnings}");
+}
