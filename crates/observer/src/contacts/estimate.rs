@@ -119,16 +119,17 @@ pub fn estimate_contacts(
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
     let rougher = options.rougher(log, &units);
-    let rough = rougher.map(|times| options.with_noise(times));
-    let record = rough.as_ref().and_then(|options| Record::new(log, options)).unwrap_or(record);
-    let source = Source { log, options: rough.as_ref().unwrap_or(options), units };
+    let rough = options.with_noise(rougher);
+    let again = if rough == *options { None } else { Record::new(log, &rough) };
+    let record = again.unwrap_or(record);
+    let source = Source { log, options: &rough, units };
     let mut record = source.with_blows(record);
     let mut found = match modes {
         Some(modes) => source.with_modes(&mut record, modes.to_vec(), true)?.0,
         None => source.with_estimated_modes(&mut record)?,
     };
-    found.evidence.rougher = rougher.unwrap_or([1.0; 2]);
-    let lost = options.suspects && is_lost(found.evidence.settled, log.times(), &units);
+    found.evidence.rougher = rougher;
+    let lost = options.suspects && is_lost(found.evidence.settled, log.duration(), &units);
     Ok(if lost { found.explained_by_beginning(log, modes, (options, &units)) } else { found })
 }
 
@@ -233,7 +234,7 @@ impl Source<'_> {
         let short = (duration < needed).then_some(Reason::TooShort { duration, needed });
         let short = short.or_else(|| too_sparse(&log.times, SPARSEST * units.time()));
         let evidence = stage.evidence(log, &covariances);
-        let lost = is_lost(evidence.settled, &log.times, &units);
+        let lost = is_lost(evidence.settled, duration, &units);
         let told = !exact && thinned.is_none() && uncontradicted && !lost;
         let (wrong, errors) = match options.suspects && told {
             true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),

@@ -12,8 +12,9 @@ use object_dynamics::{ContactLog, ContactMode, MOST_PALMS};
 const BEGINNING: f64 = 8.0;
 
 /// Whether no motion was found of a log that is so long that its beginning may tell why.
-pub(super) fn is_lost(settled: bool, times: &[f64], units: &Units) -> bool {
-    !settled && times[times.len() - 1] - times[0] > LONG.lasts.start * units.time()
+/// `duration` in s.
+pub(super) fn is_lost(settled: bool, duration: f64, units: &Units) -> bool {
+    !settled && duration > LONG.lasts.start * units.time()
 }
 
 impl ContactEstimate {

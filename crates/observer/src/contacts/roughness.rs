@@ -12,13 +12,13 @@ const CREEP: f64 = 3e-5;
 
 impl ContactOptions {
     /// How many times as noisy as stated contacts and forces of a log are, where they are by more than chance makes: those of taxels, of a sensor that is
-    /// worse than its sheet. None where noise is not what conditions are off by.
-    pub(super) fn rougher(&self, log: &ContactLog, units: &Units) -> Option<[f64; 2]> {
+    /// worse than its sheet. Else 1, and where noise is not what conditions are off by.
+    pub(super) fn rougher(&self, log: &ContactLog, units: &Units) -> [f64; 2] {
         let stated = self.noise;
         let contacts = contacts(log, self.planar).over(|_| stated.contact);
         let forces = forces(log, self.planar, LoggedPalm::force).over(|f| stated.force(DVec3::X * f));
         let rougher = [contacts, forces].map(|rough| rough.beyond_chance().unwrap_or(1.0));
-        (rougher != [1.0; 2] && stated.times(rougher).limits(units)).then_some(rougher)
+        if stated.times(rougher).limits(units) { rougher } else { [1.0; 2] }
     }
 
     /// With contacts and forces so many times as noisy.

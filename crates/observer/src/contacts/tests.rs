@@ -104,6 +104,22 @@ fn with_records(log: &ContactLog, one: impl Fn(usize, PalmRecord) -> PalmRecord)
     ContactLog::new(log.times().to_vec(), palms, log.truth().map(<[_]>::to_vec)).unwrap()
 }
 
+/// The log with contacts elsewhere along their palms: by palm and sample, from where they are in its axes, m.
+fn with_contacts(log: &ContactLog, place: impl Fn(usize, usize, DVec3) -> DVec3) -> ContactLog {
+    with_records(log, |i, mut record| {
+        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
+        for (k, point) in points.iter_mut().enumerate() {
+            let pose = log.palms()[i].motion(k).pose;
+            let moved = |p: DVec3| {
+                let own = pose.R_WP.inverse() * (p - pose.p_WP);
+                p + pose.R_WP * (place(i, k, own) - own)
+            };
+            *point = point.map(moved);
+        }
+        record
+    })
+}
+
 pub(super) fn options(noise: ContactNoiseLevel) -> ContactOptions {
     ContactOptions::new(noise, G)
 }

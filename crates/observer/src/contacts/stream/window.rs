@@ -140,7 +140,7 @@ impl Window {
         };
         let units = cold::units(&record, self.options.gravity, length);
         let natural = length / units.speed;
-        self.options = self.stated.with_noise(self.stated.rougher(&log, &units).unwrap_or([1.0; 2]));
+        self.options = self.stated.with_noise(self.stated.rougher(&log, &units));
         outcome.natural = Some(natural);
         self.natural = natural;
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);

@@ -33,16 +33,7 @@ fn contacts_at_taxels_are_those_of_a_noisy_sensor() {
     let pitch = 0.02 * SIZE;
     let exact = normal_only(&rubbed(0.6, 500.0, 0.0));
     let told = noisy(&exact, &noise(4e-6, 0.002), 4);
-    let taxels = with_records(&told, |i, mut record| {
-        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
-        for (k, point) in points.iter_mut().enumerate() {
-            let pose = told.palms()[i].motion(k).pose;
-            // Of a plane, whose points have no height.
-            let at = |p: DVec3| pose.R_WP.inverse() * (p - pose.p_WP);
-            *point = point.map(|p| pose.p_WP + pose.R_WP * ((at(p) / pitch).round() * pitch));
-        }
-        record
-    });
+    let taxels = with_contacts(&told, |_, _, own| (own / pitch).round() * pitch);
     let found = estimate_contacts(&taxels, None, &options(noise(0.1 * pitch, 0.002))).unwrap();
     assert!(found.reliability.is_reliable(), "{:?}", found.reliability);
     assert!(found.evidence.rougher[0] > 1.0 / (0.1 * 12.0_f64.sqrt()), "{:?}", found.evidence);

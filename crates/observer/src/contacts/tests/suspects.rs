@@ -27,14 +27,7 @@ fn forces(log: &ContactLog, change: impl Fn(usize, usize, &[DVec3]) -> DVec3) ->
 
 /// The log as it is told by a palm that says contacts to be elsewhere along its x axis, m.
 fn shifted(log: &ContactLog, palm: usize, by: f64) -> ContactLog {
-    with_records(log, |i, mut record| {
-        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
-        for (k, point) in points.iter_mut().enumerate().filter(|_| i == palm) {
-            let moved = log.palms()[palm].motion(k).pose.R_WP * (DVec3::X * by);
-            *point = point.map(|point| point + moved);
-        }
-        record
-    })
+    with_contacts(log, |i, _, own| if i == palm { own + DVec3::X * by } else { own })
 }
 
 #[test]
@@ -111,15 +104,8 @@ fn what_is_wrong_explains_the_log_best() {
     let found = tested(&noisy(&exact, &louder, 5), noise);
     assert!(found.reliability.is_reliable() && found.explanations.is_empty(), "{:?}", found.reliability);
     // What is as smooth as a motion is not, and is noise that nothing else explains.
-    let hums = with_records(&told, |i, mut record| {
-        let ContactPoints::World(points) = &mut record.contacts else { panic!("points in the world") };
-        for (k, point) in points.iter_mut().enumerate() {
-            let x = told.palms()[i].motion(k).pose.R_WP * DVec3::X;
-            let by = 3e-4 * (250.0 * told.times()[k] + i as f64).sin();
-            *point = point.map(|point| point + x * by);
-        }
-        record
-    });
+    let hum = |i: usize, k: usize| 3e-4 * (250.0 * told.times()[k] + i as f64).sin();
+    let hums = with_contacts(&told, |i, k, own| own + DVec3::X * hum(i, k));
     assert_eq!(first(&hums).assumption, Assumption::Noise);
 }
 
