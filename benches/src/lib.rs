@@ -32,6 +32,7 @@ mod machine;
 pub mod multipliers;
 pub mod noisy_contacts;
 pub mod palms;
+pub mod parallel;
 pub mod planar;
 pub mod reaching;
 pub mod rolling;

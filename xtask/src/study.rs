@@ -166,6 +166,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "contour.md",
         "outlines that are not convex, followed by round fingers: what is felt, what is jumped over",
     ),
+    (
+        "parallel",
+        "parallel.md",
+        "way of a palm that planners take to a gap of a body between parallel palms with friction",
+    ),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
         "rolling_sensed",

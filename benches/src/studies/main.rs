@@ -36,6 +36,7 @@ mod mode_switches;
 mod no_force;
 mod nonsmooth;
 mod palms;
+mod parallel;
 mod planar_contacts;
 mod planar_estimates;
 mod planar_estimates_friction;
@@ -108,6 +109,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("pushes", SHORT, || in_words(pushes::main())),
     ("reaching", OF_RUNS, || in_words(reaching::main())),
     ("result_bags", SHORT, || in_words(result_bags::main())),
+    ("parallel", OF_RUNS, || in_words(parallel::main())),
     ("rolling", OF_RUNS, || in_words(rolling::main())),
     ("rolling_sensed", OF_RUNS, || in_words(rolling_sensed::main())),
     ("shape_fits", OF_RUNS, || in_words(shape_fits::main())),

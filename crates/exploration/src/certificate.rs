@@ -48,6 +48,11 @@ pub enum Shortfall {
     },
     /// No touch narrows the bounds any more: noise or rounding is left.
     NothingToGain,
+    /// No motion of palms was found that uncovers what is left. Nothing is proven by that.
+    NotFound {
+        /// Outward normals where most is left, as coordinates, the worst first.
+        directions: Vec<Vec<f64>>,
+    },
 }
 
 /// How an exploration ended.

@@ -26,7 +26,8 @@
 //! # }
 //! ```
 //!
-//! A body between palms is felt where it lies: [`rolling`] plans how the palms turn, in the plane.
+//! A body between palms is felt where it lies: [`rolling`] plans how two palms turn, in the plane, and [`parallel`] how one of two parallel palms with
+//! friction moves, in space.
 //!
 //! All lengths are in m, all coordinates in the body's frame. The same seeds give the same touches to the last bit: nothing here
 //! runs in more than one thread.
@@ -44,6 +45,7 @@ mod goal;
 mod heading;
 mod knowledge;
 mod limits;
+pub mod parallel;
 pub mod planar;
 mod planner;
 mod random;

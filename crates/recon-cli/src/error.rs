@@ -245,8 +245,18 @@ pub(crate) enum CliError {
     Palms(#[from] recon::exploration::rolling::PalmsError),
     #[error("`{name}` plans nothing for {what}; use {instead}")]
     Planner { name: String, what: &'static str, instead: &'static str },
-    #[error("{} is a scene of space; palms turn in the plane (--rolling)", path.display())]
-    RolledInSpace { path: PathBuf },
+    #[error("the object cannot be rolled")]
+    Parallel(#[from] recon::exploration::parallel::ParallelError),
+    #[error("the object does not stay between the palms: give it more --friction")]
+    ParallelPalms(#[source] recon::exploration::parallel::ParallelPalmsError),
+    #[error(
+        "--force-noise is of the plane: between parallel palms contacts are felt in the object's own frame, with --contact-noise and --normal-noise"
+    )]
+    ForcesInSpace,
+    #[error(
+        "--friction is of palms that do not wait: in the plane it takes --contact-noise and --force-noise as well"
+    )]
+    FrictionAtRest,
     #[error("the confidence cannot be stated")]
     Confidence(#[from] recon::exploration::ConfidenceError),
     #[error("the goal cannot be had: {0}")]
@@ -347,7 +357,10 @@ impl CliError {
             | Self::HalfNoise
             | Self::Palms(_)
             | Self::Planner { .. }
-            | Self::RolledInSpace { .. }
+            | Self::Parallel(_)
+            | Self::ParallelPalms(_)
+            | Self::ForcesInSpace
+            | Self::FrictionAtRest
             | Self::Confidence(_)
             | Self::Goal(_)
             | Self::NoGoal { .. }

@@ -28,6 +28,8 @@ pub enum SummaryOf {
     Exploration,
     /// Motions of palms, one after the other, to a goal.
     Rolling,
+    /// Strokes of one of two parallel palms, one after the other, to a goal.
+    Strokes,
     /// An outline that a finger followed.
     Contour,
     /// A simulated scene.
@@ -52,6 +54,7 @@ impl SummaryOf {
             Self::Bounds => "bounds/1",
             Self::Exploration => "exploration/1",
             Self::Rolling => "rolling/1",
+            Self::Strokes => "strokes/1",
             Self::Contour => "contour/1",
             Self::Simulation => "simulation/1",
             Self::Export => "export/1",

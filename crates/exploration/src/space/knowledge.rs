@@ -63,6 +63,12 @@ impl SpaceKnowledge {
         Self { contacts: Vec::new(), noise: None, exact: IncrementalBounds::new(), bounds: None }
     }
 
+    /// Of exact contacts that agree, bounded once; none of what bounds nothing.
+    pub(crate) fn of_exact(contacts: Vec<ContactSample>) -> Option<Self> {
+        let bounds = ShapeBounds::from_contacts(&contacts).ok()?;
+        Some(Self { contacts, bounds: Some(bounds), ..Self::exact() })
+    }
+
     /// Of no contacts, which are to have this noise, independent from contact to contact.
     #[must_use]
     pub fn noisy(noise: Noise) -> Self {

@@ -7,5 +7,6 @@
 mod closed_loop;
 mod contour;
 mod oracle;
+mod parallel;
 mod reaching;
 mod rolling;

@@ -76,6 +76,9 @@ sides, slowly and without friction, and the object lies where its centre of mass
 --contact-noise and --force-noise the object moves by the equations of motion, sensors are noisy, and its motion is estimated from all that
 was sensed after each motion of the palms: nothing else is known of it, and bounds hold at the confidence for all these looks together.
 
+In space --rolling squeezes the object between two parallel palms with friction, of which the upper one moves: it rolls without slip, and is felt at both. Palms
+stop where the force leans by nine tenths of what friction holds. Contacts are in the object's own frame, exact or with --contact-noise and --normal-noise.
+
 With --contour a round finger keeps in touch with the outline of the scene (`[outline]`, through points or with waves, or the object of a scene of the
 plane), once round. Where it does not get in it jumps, and that is told: between the two contacts nothing was felt. The hull of the outline is bounded, with
 --contact-noise and --normal-noise at the confidence, whatever the finger does not get into. It writes contour.csv, jumps.csv and the bounds.
@@ -89,6 +92,7 @@ Examples:
   recon explore scene.toml --until hausdorff=0.05 --planner hausdorff -o out
   recon explore plane.toml --rolling --until gap=0.1 -o out
   recon explore plane.toml --rolling --until gap=0.1 --contact-noise 5e-5 --force-noise 2e-3 -o out
+  recon explore scene.toml --rolling --friction 0.9 --until gap=0.3 -o out
   recon explore outline.toml --contour --finger 0.01 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
 pub(crate) struct ExploreArgs {
@@ -111,18 +115,21 @@ pub(crate) struct ExploreArgs {
     /// Touch along rays rather than with a plane (line)
     #[arg(long)]
     pub(crate) rays: bool,
-    /// In the plane: turn two palms with the object between them, which rolls and is felt where it touches them
+    /// Move palms with the object between them, which rolls and is felt where it touches them: in the plane two that turn, in space the upper one of two
+    /// parallel ones
     #[arg(long, conflicts_with = "rays")]
     pub(crate) rolling: bool,
-    /// With --rolling: roughly the object's mean width, m; palms are four times as long [default: that of the scene's object]
+    /// With --rolling: roughly the object's mean width, m; palms are four times as long, pads in space three times as wide [default: that of the scene's
+    /// object]
     #[arg(long, value_name = "M", requires = "rolling", value_parser = positive)]
     pub(crate) width: Option<f64>,
     /// With --rolling and --contact-noise: standard deviation of each axis of the forces, N; the object's motion is then estimated from
     /// contacts and forces, and nothing of it is taken as known
     #[arg(long, value_name = "N", requires_all = ["rolling", "contact_noise"], conflicts_with = "normal_noise", value_parser = positive)]
     pub(crate) force_noise: Option<f64>,
-    /// With --force-noise: coefficient of friction of both palms, which the estimate is not told [default: 0, which it is]
-    #[arg(long, value_name = "MU", requires = "force_noise", value_parser = not_negative)]
+    /// With --rolling: coefficient of friction of both palms [default: in space 1; in the plane 0; with --force-noise the estimate is told
+    /// that it is 0, and nothing of another one]
+    #[arg(long, value_name = "MU", requires = "rolling", value_parser = not_negative)]
     pub(crate) friction: Option<f64>,
     /// Folder to write; what an earlier run wrote there and nobody changed is replaced
     #[arg(short, long)]
@@ -140,7 +147,8 @@ touch, a ray for a finger that moves on one, what the touch is expected to gain,
 settings are those of the folder's summary.json unless they are given.
 
 From a folder of `recon explore --rolling` it reads state.json as well (where palms and object are, which whoever has turned them writes anew)
-and prints the next motion of the palms: the absolute angles that they are turned to, one pair after another, and what that is expected to bring.
+and prints the next motion of the palms: the absolute angles that they are turned to, one pair after another, and what that is expected to bring; in
+space the heading of the upper palm and by how much that is to turn the object.
 
 Examples:
   recon next out

@@ -4,12 +4,13 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
     CONFIDENCE, Explored, Following, InPlane, InSpace, Settings, explored, followed, goal_of, rolled, sensed,
-    write_files_folder,
+    stroked, write_files_folder,
 };
 use crate::progress::Progress;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
+use recon::exploration::parallel::{ParallelError, ParallelWorkspace, SimulatedParallelPalms};
 use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, SimulatedPalms, Workspace};
 use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::object_dynamics::planar::PlanarObject;
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
         _ if args.contour => contour(args, &progress)?,
-        Ok(_) if args.rolling => return Err(CliError::RolledInSpace { path: args.scene.clone() }),
+        Ok(scene) if args.rolling => between(args, &scene, &progress)?,
         Ok(scene) => in_space(args, &scene, &progress)?,
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
             let scene = PlanarScene::read(&args.scene)?;
@@ -88,6 +89,34 @@ fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Ex
     explored::<InSpace>(&title(args), goal, &settings, width, &mut finger, |_, words| progress.say(words))
 }
 
+/// Friction of parallel palms that is taken if none is stated: dry soft rubber.
+const RUBBER: f64 = 1.0;
+
+/// Between two parallel palms, of which the upper one moves.
+fn between(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Explored, CliError> {
+    if args.force_noise.is_some() {
+        return Err(CliError::ForcesInSpace);
+    }
+    if args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
+        return Err(CliError::HalfNoise);
+    }
+    let nothing = || CliError::NothingToSimulate { path: args.scene.clone() };
+    let body = scene.simulation.as_ref().ok_or_else(nothing)?.body()?;
+    let mut settings = Settings::new(&args.goal, &Value::Null, 3);
+    settings.planner = args.goal.planner.unwrap_or(PlannerAs::PerSecond);
+    let lattice = <Direction as Heading>::spread(DIRECTIONS);
+    let mean = lattice.iter().map(|n| body.value(*n)).sum::<f64>() / lattice.len() as f64;
+    let workspace =
+        ParallelWorkspace::for_size(args.width.unwrap_or(2.0 * mean), args.friction.unwrap_or(RUBBER));
+    workspace.check().map_err(ParallelError::Workspace)?;
+    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
+    let support = |n: Direction| -> DVec3 { body.point(n) };
+    let palms = SimulatedParallelPalms::new(support, workspace, Source::new(settings.seed).rotation());
+    let mut palms = palms.map_err(CliError::ParallelPalms)?.with_noise(point, normal, settings.seed);
+    progress.step("moving the palm");
+    stroked(&title(args), until(args)?, &settings, workspace, &mut palms, |words| progress.say(words))
+}
+
 /// Where palms are at first, rad.
 const PALMS: [f64; 2] = [0.7, 2.4];
 
@@ -119,6 +148,7 @@ fn rolling(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Resu
             settings.budget = args.goal.budget.map_or(MOTIONS, |budget| budget as usize);
             estimated(args, scene, &settings, width, let_go, progress)
         }
+        (None, None) if args.friction.is_some() => Err(CliError::FrictionAtRest),
         (None, None) if args.goal.normal_noise.is_none() => {
             let workspace = Workspace::for_size(width);
             let mut palms = SimulatedPalms::new(body, workspace.length, PALMS, let_go)?;

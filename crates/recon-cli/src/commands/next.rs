@@ -1,7 +1,9 @@
 use crate::cli::NextArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{InPlane, InSpace, STATE, Settings, State, goal_of, next_motion, next_touch, until_of};
+use crate::pipeline::{
+    InPlane, InSpace, Placed, STATE, Settings, State, goal_of, next_motion, next_stroke, next_touch, until_of,
+};
 use recon_io::{SummaryOf, Touches, read_touches};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -30,6 +32,11 @@ pub(crate) fn planned(
         return Err(CliError::HalfNoise);
     }
     match touches {
+        Touches::Contacts { curves, .. } if earlier["schema"] == SummaryOf::Strokes.schema() => {
+            let settings = Settings::new(&args.goal, earlier, 3);
+            let placed = Placed::read(&contacts.with_file_name(STATE))?;
+            next_stroke(&curves.concat(), &placed, goal_of::<InSpace>(&until)?, &settings)
+        }
         Touches::Contacts { curves, .. } => {
             let settings = Settings::new(&args.goal, earlier, 3);
             next_touch::<InSpace>(&curves.concat(), goal_of::<InSpace>(&until)?, &settings)

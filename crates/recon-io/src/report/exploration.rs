@@ -31,6 +31,13 @@ impl ExplorationWords {
         each: "Each motion, and why",
         heads: ["Motion", "Why", "Palms to, rad", "Touched from the hinge, m", "Turned, rad"],
     };
+    /// One of two parallel palms moves, and the body between them rolls.
+    pub const STROKES: Self = Self {
+        kicker: "How a palm rolled a body, and what that proves of its shape",
+        course: "Stroke by stroke",
+        each: "Each stroke, and why",
+        heads: ["Stroke", "Why", "Then up, object's axes", "Touched on upper, lower pad, m", "Palm moved, m"],
+    };
 }
 
 /// One touch or motion, as the table of the page shows it.
@@ -40,11 +47,11 @@ pub struct TouchRow {
     pub touch: Option<usize>,
     /// Why there.
     pub why: String,
-    /// Unit vector along which the body was touched; angles of the palms after a motion, in rad.
+    /// Unit vector along which the body was touched, or that is up after a stroke; angles of the palms after a motion, in rad.
     pub along: Vec<f64>,
-    /// Where it was met, in m; none for one that is yet to be made. After a motion, distances of the contacts from the hinge.
+    /// Where it was met, in m; none for one that is yet to be made. After a motion, distances of the contacts from the hinge; after a stroke, where on the upper and the lower pad it is.
     pub point: Option<Vec<f64>>,
-    /// Way from the touch before, or turns of both palms, in rad.
+    /// Way from the touch before, or turns of both palms, in rad; of a stroke the palm's way, m.
     pub turned: f64,
     /// What it was expected to gain, in the unit of the progress.
     pub expected: Option<f64>,

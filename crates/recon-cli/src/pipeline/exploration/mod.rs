@@ -4,6 +4,8 @@ mod contour;
 mod contour_page;
 mod motions;
 mod page;
+mod parallel;
+mod parallel_state;
 mod plane;
 mod rolling;
 mod sensed;
@@ -14,6 +16,8 @@ mod state;
 mod story;
 
 pub(crate) use contour::{Following, followed};
+pub(crate) use parallel::{next_stroke, stroked};
+pub(crate) use parallel_state::Placed;
 pub(crate) use plane::InPlane;
 pub(crate) use rolling::{next_motion, rolled};
 pub(crate) use sensed::sensed;

@@ -133,7 +133,9 @@ fn statement<S: Side>(ended: &Outcome<HeadingOf<S>>) -> (String, Exit) {
         Outcome::Short { shortfall, .. } => {
             let why = match shortfall {
                 Shortfall::Budget => "all touches that were allowed for are made".to_owned(),
-                Shortfall::NothingToGain => "no touch narrows the bounds any more".to_owned(),
+                Shortfall::NothingToGain | Shortfall::NotFound { .. } => {
+                    "no touch narrows the bounds any more".to_owned()
+                }
                 Shortfall::Unreachable { directions } => {
                     format!("{} directions that would narrow the bounds are out of reach", directions.len())
                 }

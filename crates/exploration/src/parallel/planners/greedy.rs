@@ -1,0 +1,35 @@
+use super::{BODIES, best};
+use crate::parallel::planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
+use crate::parallel::predict::Course;
+use crate::planner::Reason;
+
+/// The stroke that is expected to bring most, however far it is (the paper's first strategy).
+#[derive(Clone, Debug)]
+pub struct LargestGap {
+    seed: u64,
+}
+
+impl LargestGap {
+    /// With bodies of this seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self { seed }
+    }
+}
+
+impl ParallelPlanner for LargestGap {
+    fn name(&self) -> &'static str {
+        "largest gap"
+    }
+
+    fn next(&mut self, view: &ParallelView<'_>) -> Result<ParallelProposal, ParallelPlanError> {
+        let bodies = view.bodies(BODIES, self.seed);
+        if let Some(instead) = view.instead(&bodies)? {
+            return Ok(instead);
+        }
+        let all = view.candidates(&bodies, &Course::start(&bodies, view.hold));
+        let (k, _) = best(&all, view.worth()).ok_or_else(|| view.not_found())?;
+        let (stroke, expected) = (all[k].stroke, Some(all[k].prediction));
+        Ok(ParallelProposal { stroke, expected, reason: Reason::Best })
+    }
+}

@@ -1,0 +1,67 @@
+//! Where an object is between parallel palms, as a file that `recon next` goes on from.
+
+use super::state::STATE;
+use crate::error::CliError;
+use crate::pipeline::folder::Extra;
+use glam::{DQuat, DVec2};
+use recon::exploration::parallel::{Hold, ParallelWorkspace};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Where the object is, and what palms can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Placed {
+    pub(crate) hold: Hold,
+    pub(crate) workspace: ParallelWorkspace,
+    /// Strokes so far.
+    pub(crate) stroke: usize,
+}
+
+/// Quaternions shorter than this are none.
+const NO_TURN: f64 = 1e-6;
+
+impl Placed {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// [`CliError::NotExplored`] names what is missing.
+    pub(crate) fn read(path: &Path) -> Result<Self, CliError> {
+        let wrong = |what: String| CliError::NotExplored { path: path.to_owned(), what };
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+        let state: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        let number = |key: &str, value: &Value| {
+            let value = value.as_f64().filter(|v| v.is_finite());
+            value.ok_or_else(|| wrong(format!("`{key}` is not all numbers")))
+        };
+        let pad = |k: usize| {
+            let [x, y] = [0, 1].map(|i| number("pads_m", &state["pads_m"][k][i]));
+            Ok::<_, CliError>(DVec2::new(x?, y?))
+        };
+        let of = |k: usize| number("orientation_xyzw", &state["orientation_xyzw"][k]);
+        let turn = DQuat::from_xyzw(of(0)?, of(1)?, of(2)?, of(3)?);
+        if turn.length() < NO_TURN {
+            return Err(wrong("`orientation_xyzw` is no orientation".to_owned()));
+        }
+        let hold = Hold { R_WO: turn.normalize(), pads: [pad(0)?, pad(1)?] };
+        let workspace = ParallelWorkspace::for_size(
+            number("width_m", &state["width_m"])?,
+            number("friction", &state["friction"])?,
+        );
+        let stroke =
+            state["stroke"].as_u64().ok_or_else(|| wrong("`stroke` is no number of strokes".to_owned()))?;
+        Ok(Self { hold, workspace, stroke: stroke as usize })
+    }
+}
+
+/// As a file.
+pub(super) fn state_file(placed: &Placed) -> Extra {
+    let Placed { hold, workspace, stroke } = placed;
+    let state = json!({
+        "orientation_xyzw": hold.R_WO.to_array(),
+        "pads_m": hold.pads.map(|pad| pad.to_array()),
+        "friction": workspace.friction,
+        "width_m": workspace.size,
+        "stroke": stroke,
+    });
+    (STATE.to_owned(), format!("{state:#}\n").into_bytes())
+}
