@@ -141,13 +141,21 @@ fn ratios(all: &[Compared]) {
     );
     println!("| planner | {} |\n|---|{}", heads(), "---|".repeat(GAPS.len()));
     for (name, runs) in all.iter().filter(|(name, _)| *name != "fixed sweep") {
-        let one = |gap: f64| {
-            let (ratio, [low, high]) = ratio_of_medians(&to(sweep, gap, 0), &to(runs, gap, 0));
-            if ratio.is_finite() { format!("{ratio:.2} ({low:.2} to {high:.2})") } else { "-".to_owned() }
-        };
+        let one = |gap: f64| over(&to(sweep, gap, 0), &to(runs, gap, 0));
         println!("| {name} | {} |", GAPS.map(one).join(" | "));
     }
     println!();
+}
+
+/// Ratio of medians with its interval; none where one of them is not reached.
+fn over(ways: &[Option<f64>], of: &[Option<f64>]) -> String {
+    let (ratio, [low, high]) = ratio_of_medians(ways, of);
+    let end = |v: f64| if v.is_finite() { format!("{v:.2}") } else { "-".to_owned() };
+    if ratio.is_finite() && ratio > 0.0 {
+        format!("{ratio:.2} ({} to {})", end(low), end(high))
+    } else {
+        "-".to_owned()
+    }
 }
 
 /// Cost against benefit: ways over strokes ahead and bodies drawn, beside those of the cheapest.
@@ -156,17 +164,17 @@ fn lookahead(all: &[([usize; 2], Vec<Rolling>)]) {
         "## Horizon and bodies drawn\n\nGap per way, exact contacts, some of the bodies. Way of the palm in widths, median / 90 %.\n"
     );
     println!(
-        "| strokes ahead | bodies drawn | {} | of the cheapest, to 20 % | proven | ms a choice: mean, most |",
+        "| strokes ahead | bodies drawn | {} | of the cheapest, to 30 % | proven | ms a choice: mean, most |",
         heads()
     );
     println!("|{}", "---|".repeat(8));
     let Some((_, cheapest)) = all.first() else { return };
     for ([horizon, drawn], runs) in all {
         let ways = GAPS.map(|gap| pair(&to(runs, gap, 0)));
-        let (ratio, [low, high]) = ratio_of_medians(&to(runs, 0.2, 0), &to(cheapest, 0.2, 0));
+        let ratio = over(&to(runs, 0.3, 0), &to(cheapest, 0.3, 0));
         let [usual, most] = choice(runs);
         println!(
-            "| {horizon} | {drawn} | {} | {ratio:.2} ({low:.2} to {high:.2}) | {} of {} | {usual:.0}, {most:.0} |",
+            "| {horizon} | {drawn} | {} | {ratio} | {} of {} | {usual:.0}, {most:.0} |",
             ways.join(" | "),
             count(runs, |r| r.short.is_none()),
             runs.len()

@@ -170,7 +170,7 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
         assert_eq!(scratch.read("again/report.html"), page);
     }
     let refusals = [
-        (vec!["explore", "space.toml", "--rolling", "--until", "gap=0.2"], "is a scene of space"),
+        (rolling(&["--until", "gap=0.2", "--friction", "0.3"]), "--force-noise as well"),
         (rolling(&["--planner", "gaussian", "--until", "gap=0.2"]), "use per-second"),
         (vec!["explore", "plane.toml", "--planner", "per-second", "--until", "gap=0.2"], "use path-aware"),
         (rolling(&["--until", "gap=0"]), "goal 0"),
@@ -179,6 +179,62 @@ fn palms_turn_until_the_gap_is_proven_and_say_what_they_cannot() {
         (rolling(&["--until", "gap=0.2", "--width", "1e-9"]), "beyond its end"),
     ];
     for (arguments, says) in refusals {
+        let run = scratch.run(&arguments);
+        assert!(
+            run.code == Some(3) && run.stderr.contains(says),
+            "{arguments:?} {:?} {}",
+            run.code,
+            run.stderr
+        );
+    }
+}
+
+/// Between parallel palms in space an object rolls as far as friction lets it, and what it does not let be reached is said.
+#[test]
+fn a_palm_rolls_an_object_in_space_until_the_gap_is_proven_or_friction_ends_it() {
+    let scratch = scratch("explore-strokes");
+    let rolling = |rest: &[&'static str]| [&["explore", "space.toml", "--rolling"], rest].concat();
+    let made = json(&scratch, &rolling(&["--until", "gap=0.4", "--friction", "2", "-o", "out", "--json"]), 0);
+    assert_eq!((&made["schema"], &made["proof"]["reached"]), (&"strokes/1".into(), &true.into()));
+    let [lower, upper] =
+        ["lower_volume_m3", "upper_volume_m3"].map(|name| made["bounds"][name].as_f64().unwrap());
+    let truth = 4.0 / 3.0 * std::f64::consts::PI * 2.5 * 2.0;
+    assert!(lower < truth && truth < upper && upper - lower <= 0.4 * upper, "{lower} {truth} {upper}");
+    let strokes = made["strokes"].as_array().unwrap();
+    assert_eq!((&strokes[0]["why"], &strokes[0]["way_m"]), (&"felt at the start".into(), &0.0.into()));
+    assert_eq!(strokes.last().unwrap()["way_m"], made["way_m"]);
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    let page = scratch.read("out/report.html");
+    assert!(page.contains("Stroke by stroke") && page.contains("after stroke 1"), "shown in turn");
+    assert_eq!(json(&scratch, &["next", "out"], 0)["done"], true);
+    let next = json(&scratch, &["next", "out", "--until", "gap=0.2"], 0);
+    assert_eq!(next["done"], false);
+    assert!(
+        next["action"]["heading_rad"].is_number() && next["action"]["expected"]["gain"].as_f64() > Some(0.0)
+    );
+    for (state, says) in [
+        ("{}", "orientation_xyzw"),
+        ("none", "expected"),
+        (r#"{"orientation_xyzw": [0, 0, 0, 1]}"#, "pads_m"),
+    ] {
+        scratch.write("out/state.json", state);
+        let run = scratch.run(&["next", "out", "--until", "gap=0.2"]);
+        assert!(run.code == Some(3) && run.stderr.contains(says), "{state}: {}", run.stderr);
+    }
+    let short = json(&scratch, &rolling(&["--until", "gap=0.1", "--friction", "0.05", "--json"]), 4);
+    assert!(short["warnings"][0].as_str().unwrap().contains("more friction"), "{short}");
+    let noise = ["--until", "gap=0.2", "--contact-noise", "1e-4"];
+    for (arguments, says) in [
+        (rolling(&noise), "half of the noise"),
+        (rolling(&[&noise[..], &["--force-noise", "1"]].concat()), "--normal-noise"),
+        (rolling(&["--until", "gap=0.2", "--friction", "0"]), "coefficient of friction is 0"),
+        (rolling(&["--until", "gap=0.2", "--planner", "hausdorff"]), "use per-second"),
+        (rolling(&["--until", "gap=0"]), "goal 0"),
+        (
+            rolling(&["--until", "gap=1e-6", "--contact-noise", "1e-4", "--normal-noise", "1e-3"]),
+            "below what the noise",
+        ),
+    ] {
         let run = scratch.run(&arguments);
         assert!(
             run.code == Some(3) && run.stderr.contains(says),
