@@ -171,6 +171,11 @@ const STUDIES: &[(&str, &str, &str)] = &[
         "parallel.md",
         "way of a palm that planners take to a gap of a body between parallel palms with friction",
     ),
+    (
+        "relief",
+        "relief.md",
+        "bodies in space that are not convex, touched by round fingers: what is felt, what is jumped over",
+    ),
     ("rolling", "rolling.md", "radians and seconds of palm motion that planners take to a gap in the plane"),
     (
         "rolling_sensed",

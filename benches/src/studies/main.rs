@@ -44,6 +44,7 @@ mod planar_observability;
 mod planar_tally;
 mod pushes;
 mod reaching;
+mod relief;
 mod result_bags;
 mod rolling;
 mod rolling_sensed;
@@ -108,6 +109,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("planar_observability", SHORT, || in_words(planar_observability::main())),
     ("pushes", SHORT, || in_words(pushes::main())),
     ("reaching", OF_RUNS, || in_words(reaching::main())),
+    ("relief", SHORT, || in_words(relief::main())),
     ("result_bags", SHORT, || in_words(result_bags::main())),
     ("parallel", OF_RUNS, || in_words(parallel::main())),
     ("rolling", OF_RUNS, || in_words(rolling::main())),

@@ -28,6 +28,7 @@
 //!
 //! A body between palms is felt where it lies: [`rolling`] plans how two palms turn, in the plane, and [`parallel`] how one of two parallel palms with
 //! friction moves, in space.
+//! A body that is not convex is touched by a round finger: [`contour`] follows outlines, [`relief`] comes down on bodies in space.
 //!
 //! All lengths are in m, all coordinates in the body's frame. The same seeds give the same touches to the last bit: nothing here
 //! runs in more than one thread.
@@ -50,6 +51,7 @@ pub mod planar;
 mod planner;
 mod random;
 mod reach;
+pub mod relief;
 pub mod rolling;
 pub mod space;
 mod theory;

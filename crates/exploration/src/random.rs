@@ -46,6 +46,20 @@ impl Source {
         }
     }
 
+    /// What is read of a contact: the point off by normal noise of a deviation per axis (m), the normal tilted by one about each tangent axis (rad).
+    /// None where the tilt leaves no direction.
+    pub(crate) fn reading(
+        &mut self,
+        point: DVec3,
+        normal: Direction,
+        [off, tilt]: [f64; 2],
+    ) -> Option<(DVec3, Direction)> {
+        let (a, b) = normal.tangent_basis();
+        let turned = normal.get() + (a * self.normal() + b * self.normal()) * tilt;
+        let point = point + self.normal3() * off;
+        Direction::new(turned).ok().map(|normal| (point, normal))
+    }
+
     /// Uniform over all rotations: a normalised normal vector in four dimensions.
     pub fn rotation(&mut self) -> DQuat {
         loop {

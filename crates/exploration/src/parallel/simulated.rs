@@ -66,15 +66,13 @@ impl<F: Fn(Direction) -> DVec3> SimulatedParallelPalms<F> {
 
     fn read(&mut self, way: f64, stop: Option<Stop>) -> Result<FeltBetween, ParallelPalmsError> {
         let [up, down] = self.hold.normals();
-        let (hold, point, turn) = (self.hold, self.point, self.normal);
+        let (hold, noise) = (self.hold, [self.point, self.normal]);
         let (body, source) = (&self.body, &mut self.source);
         let mut felt = |along: Direction, palm: &'static str| {
-            let none = ParallelPalmsError::NotFinite { palm };
-            let (a, b) = along.tangent_basis();
-            let tilt = (a * source.normal() + b * source.normal()) * turn;
-            let point = body.farthest(along) + source.normal3() * point;
-            let normal = Direction::new(along.get() + tilt).map_err(|_| none)?;
-            if point.is_finite() { Ok(ContactSample { point, normal }) } else { Err(none) }
+            let read = source.reading(body.farthest(along), along, noise);
+            let (point, normal) = read.ok_or(ParallelPalmsError::NotFinite { palm })?;
+            let finite = point.is_finite().then_some(ContactSample { point, normal });
+            finite.ok_or(ParallelPalmsError::NotFinite { palm })
         };
         let contacts = [felt(up, "upper")?, felt(down, "lower")?];
         Ok(FeltBetween { hold, contacts, way, stop })

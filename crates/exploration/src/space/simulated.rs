@@ -66,10 +66,8 @@ impl<F: Fn(Direction) -> DVec3> Finger<SpaceKnowledge> for SimulatedFinger<F> {
             (Motion::Ray, Some([from, to])) => self.cast(from, to)?,
             _ => ((self.support)(proposal.along), proposal.along),
         };
-        let (a, b) = normal.tangent_basis();
-        let tilt = (a * self.source.normal() + b * self.source.normal()) * self.normal;
-        let point = point + self.source.normal3() * self.point;
-        let normal = Direction::new(normal.get() + tilt).map_err(|_| TouchError::NotFinite)?;
+        let read = self.source.reading(point, normal, [self.point, self.normal]);
+        let (point, normal) = read.ok_or(TouchError::NotFinite)?;
         if !point.is_finite() {
             return Err(TouchError::NotFinite);
         }

@@ -9,4 +9,5 @@ mod contour;
 mod oracle;
 mod parallel;
 mod reaching;
+mod relief;
 mod rolling;
