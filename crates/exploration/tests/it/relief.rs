@@ -1,5 +1,6 @@
 //! Bodies in space that are not convex, touched by a round finger on lines: on either side of the radius that gets into their hollows.
 
+use crate::rolling::few_or_all;
 use contact_kinematics::Direction;
 use exploration::contour::Margins;
 use exploration::relief::{
@@ -198,7 +199,7 @@ fn first_contacts<S: ImplicitSurface + Clone>(
 /// A finger that is smaller than every hollow feels all of the body; what is left of the reach is the body and little more.
 #[test]
 fn hollows_wider_than_the_finger_are_recovered() {
-    for ((body, bottom), share) in bodies().into_iter().zip([0.5, 0.8]) {
+    for ((body, bottom), share) in bodies().into_iter().zip([0.5, 0.8]).skip(few_or_all(1, 0)) {
         let hollow = body.hollow(bottom).unwrap();
         let relief = felt(body.clone(), share * hollow, &probing(1.6, 0.06));
         assert!(relief.is_felt(), "{} {} {hollow}", relief.bridges.len(), relief.rims.len());
@@ -216,7 +217,7 @@ fn hollows_wider_than_the_finger_are_recovered() {
 /// A finger that is larger jumps in each hollow, and the data say that no larger radius is between; the hull is bounded as well as before.
 #[test]
 fn hollows_narrower_than_the_finger_are_named() {
-    for ((body, bottom), share) in bodies().into_iter().zip([1.5, 1.15]) {
+    for ((body, bottom), share) in bodies().into_iter().zip([1.5, 1.15]).skip(few_or_all(1, 0)) {
         let hollow = body.hollow(bottom).unwrap();
         let radius = share * hollow;
         let relief = felt(body.clone(), radius, &Probing { least: 1e-3, ..probing(1.4, 0.1) });
@@ -252,9 +253,11 @@ fn a_ring_is_felt_through_its_hole() {
     assert!((inner[0] + 1.0 / 0.45).abs() < 1e-12 && (inner[1] - 4.0).abs() < 1e-12);
     // Down the hole the wall is seen from few directions: of sixteen no two see all of it, and that is told.
     let with = probing(1.0, 0.08);
-    let few = felt(ring, 0.25, &with);
-    assert!(few.bridges.is_empty() && !few.rims.is_empty());
-    assert!(few.rims.iter().all(|k| few.touches[*k].point.with_z(0.0).length() < 0.7), "on the inside");
+    if few_or_all(false, true) {
+        let few = felt(ring, 0.25, &with);
+        assert!(few.bridges.is_empty() && !few.rims.is_empty());
+        assert!(few.rims.iter().all(|k| few.touches[*k].point.with_z(0.0).length() < 0.7), "on the inside");
+    }
     let through = felt(ring, 0.25, &Probing { directions: Direction::spread(40), ..probing(1.0, 0.06) });
     assert!(through.is_felt(), "{} {}", through.bridges.len(), through.rims.len());
     let bounds = ReliefBounds::of(&through, 0.06).unwrap();
@@ -311,7 +314,7 @@ fn bounds_under_noise_are_sound() {
     let margins = Margins::of_noise_in_space(noise, 0.95, readings).unwrap();
     let (body, bottom) = bodies()[0].clone();
     let hollow = body.hollow(bottom).unwrap();
-    for (seed, share) in [(1, 0.6), (2, 1.4)] {
+    for (seed, share) in [(1, 0.6), (2, 1.4)].into_iter().skip(few_or_all(1, 0)) {
         let finger = SimulatedFinger::new(body.clone(), share * hollow).unwrap();
         let mut finger = finger.with_noise(noise[0], noise[1], seed);
         let relief =
