@@ -11,8 +11,6 @@ pub struct ParallelWorkspace {
     pub share: f64,
     /// Radius of the pads, m: contacts stay within it.
     pub pad: f64,
-    /// Largest speed of the upper palm, m/s.
-    pub speed: f64,
     /// Mean width of the body in m, roughly: it turns ways into angles, and bodies are drawn so large where little is known. No proof rests on it.
     pub size: f64,
 }
@@ -41,7 +39,7 @@ impl ParallelWorkspace {
     /// Pads three times as wide as a body of mean width `size` (m), with this friction, that stop at nine tenths of it.
     #[must_use]
     pub fn for_size(size: f64, friction: f64) -> Self {
-        Self { friction, share: 0.9, pad: 1.5 * size, speed: size, size }
+        Self { friction, share: 0.9, pad: 1.5 * size, size }
     }
 
     /// Whether these are limits.
@@ -52,7 +50,6 @@ impl ParallelWorkspace {
         let numbers = [
             ("the coefficient of friction", self.friction),
             ("the radius of the pads", self.pad),
-            ("the speed of the palm", self.speed),
             ("the size of the body", self.size),
         ];
         for (what, value) in numbers {

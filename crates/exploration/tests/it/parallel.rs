@@ -178,7 +178,6 @@ fn what_is_no_task_is_named() {
         for workspace in [
             ParallelWorkspace { friction: value, ..good.workspace },
             ParallelWorkspace { pad: value, ..good.workspace },
-            ParallelWorkspace { speed: value, ..good.workspace },
             ParallelWorkspace { size: value, ..good.workspace },
         ] {
             let error = try_it(&with(workspace)).unwrap_err();
