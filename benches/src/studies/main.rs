@@ -109,7 +109,7 @@ const STUDIES: &[(&str, Parts, Run)] = &[
     ("planar_observability", SHORT, || in_words(planar_observability::main())),
     ("pushes", SHORT, || in_words(pushes::main())),
     ("reaching", OF_RUNS, || in_words(reaching::main())),
-    ("relief", SHORT, || in_words(relief::main())),
+    ("relief", OF_RUNS, || in_words(relief::main())),
     ("result_bags", SHORT, || in_words(result_bags::main())),
     ("parallel", OF_RUNS, || in_words(parallel::main())),
     ("rolling", OF_RUNS, || in_words(rolling::main())),

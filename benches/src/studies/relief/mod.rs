@@ -9,8 +9,9 @@ use exploration::relief::{
 use exploration::{Heading, Source};
 use glam::DVec3;
 use recon::shape_bounds::exact_hull::Direction;
+use recon_benches::rows::{is_part, rows_in_threads};
 
-type Failure = Box<dyn std::error::Error>;
+type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Seeds of the bodies; settings were chosen on those from 1000 to 1010.
 const FIRST_SEED: u64 = 890_000;
@@ -41,26 +42,13 @@ const READINGS: usize = 400_000;
 /// Points of a surface that bounds are held against.
 const POINTS: usize = 100_000;
 
-/// What came of one range.
-#[derive(Default)]
-struct Tally {
-    runs: usize,
-    done: usize,
-    felt: usize,
-    jumped: usize,
-    rims: usize,
-    sound: usize,
-    /// Jumps whose hollow is wider than they say.
-    wrong: usize,
-    /// Sum of the widths between the hull's bounds over that of the body.
-    gap: f64,
-    /// Sum and least of volumes over the body's, less 1.
-    volume: f64,
-    least_volume: f64,
-    readings: usize,
-    /// Of what was felt the largest error of the least radius that is told; of jumps of the radius that is told over the finger's, less 1.
-    told: f64,
-}
+/// What came of one body: whether all lines were tried, all was felt, each hollow jumped at, a rim left, and the bounds held; jumps whose hollow is wider
+/// than they say, and lines.
+type Counts = [usize; 7];
+/// The width between the hull's bounds over that of the body; its volume's bound over the body's, less 1; of what was felt the error of the least radius that is told,
+/// of jumps of the radius that is told over the finger's.
+type Shares = [f64; 3];
+type Row = (Counts, Shares);
 
 pub(crate) fn main() -> Result<(), Failure> {
     let each: u64 = crate::words().next().map_or(Ok(8), |a| a.parse())?;
@@ -75,11 +63,12 @@ pub(crate) fn main() -> Result<(), Failure> {
         );
         println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
         for (k, range) in RANGES.into_iter().enumerate() {
-            let mut tally = Tally { least_volume: f64::INFINITY, ..Tally::default() };
-            for body in 0..each {
-                one(&mut tally, first + each * k as u64 + body, range, noise)?;
+            let start = first + each * k as u64;
+            let seeds: Vec<u64> = (start..start + each).collect();
+            let rows: Vec<Row> = rows_in_threads(&seeds, |seed| one(*seed, range, noise))?;
+            if !is_part() {
+                println!("| {} to {} | {} |", range[0], range[1], cells(&rows));
             }
-            println!("| {} to {} | {} |", range[0], range[1], tally.cells());
         }
         println!();
     }
@@ -87,17 +76,23 @@ pub(crate) fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-impl Tally {
-    fn cells(&self) -> String {
-        let mean = |sum: f64| sum / self.runs.max(1) as f64;
-        let Self { runs, done, felt, jumped, rims, sound, wrong, .. } = self;
-        let [gap, volume, least, told] =
-            [mean(self.gap), mean(self.volume), self.least_volume, self.told].map(|share| 100.0 * share);
-        let readings = mean(self.readings as f64);
-        format!(
-            "{runs} | {done} | {felt} | {jumped} | {rims} | {wrong} | {sound} | {gap:.2} | {volume:.2} | {least:.2} | {readings:.0} | {told:.1}"
-        )
-    }
+/// Counts in all, means and extremes.
+fn cells(rows: &[Row]) -> String {
+    let runs = rows.len();
+    let count = |k: usize| rows.iter().map(|(counts, _)| counts[k]).sum::<usize>();
+    let mean = |k: usize| 100.0 * rows.iter().map(|(_, shares)| shares[k]).sum::<f64>() / runs.max(1) as f64;
+    let extreme = |k: usize, start: f64, of: fn(f64, f64) -> f64| {
+        100.0 * rows.iter().map(|(_, shares)| shares[k]).fold(start, of)
+    };
+    let [done, felt, jumped, rims, sound, wrong, readings] = [0, 1, 2, 3, 4, 5, 6].map(count);
+    format!(
+        "{runs} | {done} | {felt} | {jumped} | {rims} | {wrong} | {sound} | {:.2} | {:.2} | {:.2} | {:.0} | {:.1}",
+        mean(0),
+        mean(1),
+        extreme(1, f64::INFINITY, f64::min),
+        readings as f64 / runs.max(1) as f64,
+        extreme(2, 0.0, f64::max)
+    )
 }
 
 /// A body, the bottoms of its hollows (of a groove eight of them once round), and their least radius, m.
@@ -138,7 +133,7 @@ fn drawn(source: &mut Source) -> Result<Drawn, Failure> {
     }
 }
 
-fn one(tally: &mut Tally, seed: u64, [low, high]: [f64; 2], noise: Option<[f64; 2]>) -> Result<(), Failure> {
+fn one(seed: u64, [low, high]: [f64; 2], noise: Option<[f64; 2]>) -> Result<Row, Failure> {
     let mut source = Source::new(seed);
     let Drawn { body, bottoms, hollow } = drawn(&mut source)?;
     let radius = hollow * source.between(low, high);
@@ -160,28 +155,19 @@ fn one(tally: &mut Tally, seed: u64, [low, high]: [f64; 2], noise: Option<[f64; 
         readings: READINGS,
     };
     let found = probe(&mut finger, &probing)?;
-    tally.runs += 1;
-    tally.done += usize::from(found.end == ReliefEnd::Done);
-    tally.readings += found.readings;
-    tally.rims += usize::from(!found.rims.is_empty());
-    if found.is_felt() {
-        tally.felt += 1;
-        tally.told = tally.told.max(found.least_hollow.map_or(1.0, |told| (told / hollow - 1.0).abs()));
-    }
-    tally.jumped += usize::from(bottoms.iter().all(|b| jumps_at(&found, *b)));
-    tally.wrong += found.bridges.iter().filter(|b| b.radius_at_most < hollow).count();
-    if !found.bridges.is_empty() {
-        let above = found.bridges.iter().map(|b| (b.radius_at_most / radius - 1.0).abs());
-        tally.told = tally.told.max(above.fold(0.0, f64::max));
-    }
+    let off = |told: f64, of: f64| (told / of - 1.0).abs();
+    let felt = found.is_felt().then(|| found.least_hollow.map_or(1.0, |told| off(told, hollow)));
+    let told =
+        found.bridges.iter().map(|b| off(b.radius_at_most, radius)).fold(felt.unwrap_or(0.0), f64::max);
+    let jumped = bottoms.iter().all(|b| jumps_at(&found, *b));
+    let wrong = found.bridges.iter().filter(|b| b.radius_at_most < hollow).count();
     let bounds = ReliefBounds::of(&found, spacing)?;
     let over = bounds.volume_at_most() / body.volume(POINTS) - 1.0;
-    tally.volume += over;
-    tally.least_volume = tally.least_volume.min(over);
     let (sound, gap) = judged(&bounds, &points);
-    tally.sound += usize::from(sound);
-    tally.gap += gap;
-    Ok(())
+    let [done, felt, jumped, rims, sound] =
+        [found.end == ReliefEnd::Done, felt.is_some(), jumped, !found.rims.is_empty(), sound]
+            .map(usize::from);
+    Ok(([done, felt, jumped, rims, sound, wrong, found.readings], [gap, over, told]))
 }
 
 /// Whether a jump is told whose middle is seen from the body's centre within 25 degrees of a bottom: those of a groove are 45 degrees apart.
