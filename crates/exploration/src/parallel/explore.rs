@@ -3,7 +3,7 @@
 use super::hold::{Hold, Stop, Wall, steps};
 use super::palms::{FeltBetween, ParallelPalms, ParallelPalmsError};
 use super::planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
-use super::predict::{Prediction, apart};
+use super::predict::{Prediction, unfelt};
 use super::workspace::{ParallelWorkspace, ParallelWorkspaceError};
 use crate::certificate::{Certificate, Outcome, Shortfall};
 use crate::confidence::Spending;
@@ -113,7 +113,6 @@ struct Loop<'a> {
     known: &'a mut SpaceKnowledge,
     task: &'a ParallelTask,
     hold: Hold,
-    taken: Vec<Direction>,
     /// Normals of the reading before.
     last: [Direction; 2],
     way: f64,
@@ -126,9 +125,8 @@ impl Loop<'_> {
     /// what is taken: under noise its chance of misleading is the one that was stated.
     fn learn(&mut self, reading: &FeltBetween) -> Result<(), KnowledgeError> {
         for (contact, last) in reading.contacts.iter().zip(&mut self.last) {
-            if apart(self.taken.iter().copied(), *last, self.task.spacing) || self.taken.len() < 2 {
+            if unfelt(self.known, *last, self.task.spacing) || self.known.touches() < 2 {
                 self.known.insert(*contact)?;
-                self.taken.push(contact.normal);
             }
             *last = contact.normal;
         }
@@ -198,7 +196,7 @@ pub fn explore_parallel(
     }
     let first = palms.feel()?;
     let (hold, last) = (first.hold, first.contacts.map(|c| c.normal));
-    let mut state = Loop { known, task, hold, taken: Vec::new(), last, way: 0.0, idle: 0, walls: Vec::new() };
+    let mut state = Loop { known, task, hold, last, way: 0.0, idle: 0, walls: Vec::new() };
     state.learn(&first)?;
     observe(&state.step(0, None, first), state.known);
     let mut stroke = 0;

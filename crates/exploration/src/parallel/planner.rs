@@ -2,7 +2,7 @@
 
 use super::belief::{DrawnBody, drawn};
 use super::hold::{Hold, Stroke, Wall};
-use super::predict::{Course, Prediction, apart};
+use super::predict::{Course, Prediction};
 use super::workspace::ParallelWorkspace;
 use crate::goal::Goal;
 use crate::knowledge::Knowledge;
@@ -90,11 +90,6 @@ const AWAY: usize = 3;
 const GIVEN_UP: usize = 12;
 
 impl ParallelView<'_> {
-    /// Whether a contact of this normal would be taken.
-    pub(super) fn known_apart(&self, normal: Direction) -> bool {
-        apart(self.known.contacts().iter().map(|c| c.normal), normal, self.spacing)
-    }
-
     /// Bodies drawn for the view, of a planner with `seed`.
     pub(super) fn bodies(&self, count: usize, seed: u64) -> Vec<DrawnBody> {
         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(self.stroke as u64);
@@ -126,8 +121,14 @@ impl ParallelView<'_> {
 
     /// Where the bounds are farthest apart.
     pub(super) fn not_found(&self) -> ParallelPlanError {
-        let directions = self.known.bounds().map_or_else(Vec::new, farthest_gaps);
-        ParallelPlanError::NotFound { directions }
+        ParallelPlanError::NotFound { directions: self.farthest_gaps() }
+    }
+
+    /// Directions of the farthest corners of the upper bound from the lower one.
+    pub(super) fn farthest_gaps(&self) -> Vec<Direction> {
+        let mut gaps = self.known.bounds().map_or_else(Vec::new, ShapeBounds::gaps);
+        gaps.sort_by(|a, b| b.distance.total_cmp(&a.distance));
+        gaps.iter().take(AIMED).map(|gap| gap.direction).collect()
     }
 
     /// The goal's quantity that a stroke must be expected to bring.
@@ -135,16 +136,20 @@ impl ParallelView<'_> {
         WORTH * (self.known.progress(self.goal) - self.goal.value()).max(0.0)
     }
 
-    /// All strokes from `course`, in a fixed order, that friction holds on most bodies.
-    pub(super) fn candidates(&self, bodies: &[DrawnBody], course: &Course) -> Vec<Candidate> {
+    /// All strokes from `course`, in a fixed order: of all headings, and towards `aims` (body axes).
+    pub(super) fn candidates(
+        &self,
+        bodies: &[DrawnBody],
+        course: &Course,
+        aims: &[Direction],
+    ) -> Vec<Candidate> {
         let Some(hold) = course.holds.first() else { return Vec::new() };
         let mut strokes: Vec<Stroke> = Vec::new();
         for k in 0..HEADINGS {
             let heading = TAU * k as f64 / HEADINGS as f64;
             strokes.extend(TURNS.map(|turn| Stroke { heading, turn }));
         }
-        let gaps = self.known.bounds().map_or_else(Vec::new, farthest_gaps);
-        strokes.extend(gaps.into_iter().filter_map(|along| towards(hold, along)));
+        strokes.extend(aims.iter().filter_map(|along| towards(hold, *along)));
         let one = |stroke: Stroke| {
             let course = course.then(self, bodies, stroke);
             let prediction = course.prediction(self, bodies);
@@ -154,15 +159,8 @@ impl ParallelView<'_> {
     }
 }
 
-/// Directions of the farthest corners of the upper bound from the lower one.
-fn farthest_gaps(bounds: &ShapeBounds) -> Vec<Direction> {
-    let mut gaps = bounds.gaps();
-    gaps.sort_by(|a, b| b.distance.total_cmp(&a.distance));
-    gaps.iter().take(AIMED).map(|gap| gap.direction).collect()
-}
-
 /// The shortest stroke that brings `along` (body axes) or its opposite to a contact; none where it is there.
-pub(super) fn towards(hold: &Hold, along: Direction) -> Option<Stroke> {
+fn towards(hold: &Hold, along: Direction) -> Option<Stroke> {
     let v = hold.R_WO * along.get();
     let v = if v.z < 0.0 { -v } else { v };
     let level = v.truncate();

@@ -3,6 +3,7 @@
 use super::belief::DrawnBody;
 use super::hold::{Hold, Stop, Stroke, steps};
 use super::planner::ParallelView;
+use crate::space::SpaceKnowledge;
 use contact_kinematics::Direction;
 use glam::DVec2;
 
@@ -45,9 +46,10 @@ impl Course {
         for (k, body) in bodies.iter().enumerate() {
             let mut through = true;
             for _ in 0..parts {
-                let walled = view.walls.iter().any(|wall| wall.stops(&next.holds[k], along));
-                let stepped = next.holds[k].stepped(body, view.workspace, along, turn);
-                match if walled { Err(Stop::Shear) } else { stepped } {
+                let hold = next.holds[k];
+                let walled = view.walls.iter().any(|wall| wall.stops(&hold, along));
+                let stepped = || hold.stepped(body, view.workspace, along, turn);
+                match if walled { Err(Stop::Shear) } else { stepped() } {
                     Ok((hold, way)) => {
                         next.holds[k] = hold;
                         next.way += way / bodies.len() as f64;
@@ -68,7 +70,7 @@ impl Course {
     /// Takes those contacts of body `k` that would be taken of the true one.
     fn feel(&mut self, view: &ParallelView<'_>, k: usize) {
         for n in self.holds[k].normals() {
-            if view.known_apart(n) && apart(self.felt[k].iter().copied(), n, view.spacing) {
+            if unfelt(view.known, n, view.spacing) && apart(self.felt[k].iter().copied(), n, view.spacing) {
                 self.felt[k].push(n);
             }
         }
@@ -82,8 +84,13 @@ impl Course {
     }
 }
 
+/// Whether a contact of this normal would be taken: none that is known is nearer than `spacing` (rad).
+pub(super) fn unfelt(known: &SpaceKnowledge, normal: Direction, spacing: f64) -> bool {
+    apart(known.contacts().iter().map(|c| c.normal), normal, spacing)
+}
+
 /// Whether a normal is no nearer than `spacing` (rad) to any of some.
-pub(super) fn apart(all: impl IntoIterator<Item = Direction>, normal: Direction, spacing: f64) -> bool {
+fn apart(all: impl IntoIterator<Item = Direction>, normal: Direction, spacing: f64) -> bool {
     // By the chord: cheaper than the angle, and as good.
     let chord = 2.0 * (0.5 * spacing).sin();
     all.into_iter().all(|n| (n.get() - normal.get()).length_squared() >= chord * chord)

@@ -27,7 +27,7 @@ impl ParallelPlanner for LargestGap {
         if let Some(instead) = view.instead(&bodies)? {
             return Ok(instead);
         }
-        let all = view.candidates(&bodies, &Course::start(&bodies, view.hold));
+        let all = view.candidates(&bodies, &Course::start(&bodies, view.hold), &view.farthest_gaps());
         let (k, _) = best(&all, view.worth()).ok_or_else(|| view.not_found())?;
         let (stroke, expected) = (all[k].stroke, Some(all[k].prediction));
         Ok(ParallelProposal { stroke, expected, reason: Reason::Best })

@@ -35,7 +35,7 @@ impl ParallelPlanner for NearestGap {
         if let Some(instead) = view.instead(&bodies)? {
             return Ok(instead);
         }
-        let all = view.candidates(&bodies, &Course::start(&bodies, view.hold));
+        let all = view.candidates(&bodies, &Course::start(&bodies, view.hold), &view.farthest_gaps());
         let (first, gain) = best(&all, view.worth()).ok_or_else(|| view.not_found())?;
         let good = (0..all.len()).filter(|k| all[*k].prediction.gain >= SHARE * gain);
         let way = |k: usize| {

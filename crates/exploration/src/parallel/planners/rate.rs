@@ -45,13 +45,14 @@ impl ParallelPlanner for PathRate {
             return Ok(instead);
         }
         let mut beam: Vec<(Course, Option<First>)> = vec![(Course::start(&bodies, view.hold), None)];
+        let (aims, worth) = (view.farthest_gaps(), view.worth());
         let mut best: Option<(f64, First)> = None;
         for depth in 0..self.horizon {
             let mut found: Vec<(f64, Course, First)> = Vec::new();
             for (course, first) in &beam {
-                for c in view.candidates(&bodies, course) {
+                for c in view.candidates(&bodies, course, &aims) {
                     let p = c.prediction;
-                    if p.gain > view.worth() {
+                    if p.gain > worth {
                         let rate = p.gain / (p.way + EACH * view.workspace.size * (depth + 1) as f64);
                         found.push((rate, c.course, first.unwrap_or((c.stroke, p))));
                     }
