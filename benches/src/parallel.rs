@@ -184,15 +184,14 @@ pub fn runs(
 
 impl Cells for Rolling {
     fn write(&self, to: &mut Vec<String>) {
-        self.family.name().to_owned().write(to);
+        self.family.write(to);
         self.steps.write(to);
         (self.strokes, self.contacts, self.planning).write(to);
         (self.short.map(str::to_owned), self.holds).write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
-        let name = String::read(from)?;
-        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let family = Family::read(from)?;
         let steps = Cells::read(from)?;
         let (strokes, contacts, planning) = Cells::read(from)?;
         let (word, holds): (Option<String>, _) = Cells::read(from)?;

@@ -245,15 +245,14 @@ const SHORT: [&str; 3] = ["budget", "not found", "lost"];
 
 impl Cells for Rolling {
     fn write(&self, to: &mut Vec<String>) {
-        self.family.name().to_owned().write(to);
+        self.family.write(to);
         self.steps.write(to);
         [self.motions, self.falls, self.named, self.contacts].write(to);
         (self.planning, self.short.map(str::to_owned), self.holds).write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
-        let name = String::read(from)?;
-        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let family = Family::read(from)?;
         let steps = Cells::read(from)?;
         let [motions, falls, named, contacts] = Cells::read(from)?;
         let (planning, word, holds): (_, Option<String>, _) = Cells::read(from)?;

@@ -91,14 +91,13 @@ pub fn hindsight(bodies: Bodies) -> Result<Vec<Hindsight>, Box<dyn std::error::E
 
 impl Cells for Hindsight {
     fn write(&self, to: &mut Vec<String>) {
-        self.family.name().to_owned().write(to);
+        self.family.write(to);
         let counts = [self.fewest, self.made].map(|counts| counts.map(|n| n.unwrap_or(usize::MAX)));
         (counts, self.way).write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
-        let name = String::read(from)?;
-        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let family = Family::read(from)?;
         let (counts, way): ([[usize; 3]; 2], _) = Cells::read(from)?;
         let [fewest, made] = counts.map(|of| of.map(|n| (n < usize::MAX).then_some(n)));
         Some(Self { family, fewest, made, way })

@@ -38,15 +38,26 @@ impl Trace {
     }
 }
 
+/// By its name.
+impl Cells for Family {
+    fn write(&self, to: &mut Vec<String>) {
+        self.name().to_owned().write(to);
+    }
+
+    fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
+        let name = String::read(from)?;
+        Self::ALL.into_iter().find(|family| family.name() == name)
+    }
+}
+
 impl Cells for Trace {
     fn write(&self, to: &mut Vec<String>) {
-        (self.family.name().to_owned(), self.seconds).write(to);
+        (self.family, self.seconds).write(to);
         (self.progress.clone(), self.way.clone()).write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
-        let (name, seconds): (String, f64) = Cells::read(from)?;
-        let family = Family::ALL.into_iter().find(|family| family.name() == name)?;
+        let (family, seconds) = Cells::read(from)?;
         let (progress, way) = Cells::read(from)?;
         Some(Self { family, progress, way, seconds })
     }

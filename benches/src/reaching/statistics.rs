@@ -11,6 +11,16 @@ pub fn quantile(values: &[Option<f64>], share: f64) -> f64 {
     all.get(at.max(1) - 1).copied().unwrap_or(f64::NAN)
 }
 
+/// Median and 90 %, as tables show them; a dash for what was not reached.
+#[must_use]
+pub fn median_and_tail(values: &[Option<f64>], digits: usize) -> String {
+    let one = |share: f64| match quantile(values, share) {
+        v if v.is_finite() => format!("{v:.digits$}"),
+        _ => "-".to_owned(),
+    };
+    format!("{} / {}", one(0.5), one(0.9))
+}
+
 /// Mean of `values`, with `cap` for those that were not reached.
 #[must_use]
 pub fn mean(values: &[Option<f64>], cap: f64) -> f64 {

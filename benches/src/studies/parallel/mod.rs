@@ -4,7 +4,7 @@
 
 use recon_benches::parallel::{LOOKAHEAD, PLANNERS, Rolling, Setting, runs};
 use recon_benches::reaching::Bodies;
-use recon_benches::reaching::statistics::{quantile, ratio_of_medians};
+use recon_benches::reaching::statistics::{median_and_tail, quantile, ratio_of_medians};
 use recon_benches::rows::is_part;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -68,14 +68,6 @@ fn to(runs: &[Rolling], gap: f64, what: usize) -> Vec<Option<f64>> {
     runs.iter().map(|r| r.to(gap).map(|way| way[what])).collect()
 }
 
-fn pair(values: &[Option<f64>]) -> String {
-    let one = |share: f64| match quantile(values, share) {
-        v if v.is_finite() => format!("{v:.1}"),
-        _ => "-".to_owned(),
-    };
-    format!("{} / {}", one(0.5), one(0.9))
-}
-
 fn heads() -> String {
     GAPS.map(|g| format!("{:.0} %", 100.0 * g)).join(" | ")
 }
@@ -87,7 +79,7 @@ fn ways(all: &[Compared], what: usize, title: &str) {
         "---|".repeat(GAPS.len())
     );
     for (name, runs) in all {
-        println!("| {name} | {} |", GAPS.map(|g| pair(&to(runs, g, what))).join(" | "));
+        println!("| {name} | {} |", GAPS.map(|g| median_and_tail(&to(runs, g, what), 1)).join(" | "));
     }
     println!();
 }
@@ -170,7 +162,7 @@ fn lookahead(all: &[([usize; 2], Vec<Rolling>)]) {
     println!("|{}", "---|".repeat(8));
     let Some((_, cheapest)) = all.first() else { return };
     for ([horizon, drawn], runs) in all {
-        let ways = GAPS.map(|gap| pair(&to(runs, gap, 0)));
+        let ways = GAPS.map(|gap| median_and_tail(&to(runs, gap, 0), 1));
         let ratio = over(&to(runs, 0.3, 0), &to(cheapest, 0.3, 0));
         let [usual, most] = choice(runs);
         println!(
@@ -194,7 +186,7 @@ fn rubbed(all: &[(f64, Vec<Rolling>)]) {
         let stopped: usize = runs.iter().map(|r| r.strokes[1]).sum();
         println!(
             "| {friction} | {} | {} of {} | {} | {:.1} |",
-            GAPS.map(|gap| pair(&to(runs, gap, 0))).join(" | "),
+            GAPS.map(|gap| median_and_tail(&to(runs, gap, 0), 1)).join(" | "),
             count(runs, |r| r.short.is_none()),
             runs.len(),
             count(runs, |r| r.short == Some("not found")),
@@ -216,7 +208,7 @@ fn under_noise(all: &[Compared]) {
         let [usual, most] = choice(runs);
         println!(
             "| {name} | {} | {} of {} | {:.0} | {usual:.0}, {most:.0} | {} of {} |",
-            pair(&to(runs, 0.3, 0)),
+            median_and_tail(&to(runs, 0.3, 0), 1),
             count(runs, |r| r.short.is_none()),
             runs.len(),
             quantile(&contacts, 0.5),

@@ -3,7 +3,7 @@
 use super::{Failure, touches};
 use exploration::Goal;
 use exploration::generators::{Family, outline, solid};
-use recon_benches::reaching::statistics::{mean, quantile, ratio_of_medians};
+use recon_benches::reaching::statistics::{mean, median_and_tail, ratio_of_medians};
 use recon_benches::reaching::{Bodies, Trace, plane, space};
 use recon_benches::rows::{is_part, rows_in_threads};
 
@@ -17,14 +17,6 @@ pub(super) fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.0}") } else { "not reached".to_owned() }
 }
 
-fn pair(values: &[Option<f64>], digits: usize) -> String {
-    let one = |share: f64| match quantile(values, share) {
-        v if v.is_finite() => format!("{v:.digits$}"),
-        _ => "-".to_owned(),
-    };
-    format!("{} / {}", one(0.5), one(0.9))
-}
-
 /// Touches to each goal and the way to the last one.
 pub(super) fn touches_table(all: &[Compared], goals: &[f64]) {
     let heads: Vec<String> = goals.iter().map(|g| format!("{:.0} %", 100.0 * g)).collect();
@@ -32,7 +24,7 @@ pub(super) fn touches_table(all: &[Compared], goals: &[f64]) {
     println!("|---|{}---|---|---|---|", "---|".repeat(goals.len()));
     let last = goals.last().copied().unwrap_or(0.1);
     for Compared { name, traces } in all {
-        let cells: Vec<String> = goals.iter().map(|g| pair(&touches(traces, *g), 0)).collect();
+        let cells: Vec<String> = goals.iter().map(|g| median_and_tail(&touches(traces, *g), 0)).collect();
         let ways: Vec<Option<f64>> = traces.iter().map(|t| t.to(last).map(|(_, way)| way)).collect();
         let reached = touches(traces, last);
         let lost = reached.iter().filter(|t| t.is_none()).count();
@@ -40,7 +32,11 @@ pub(super) fn touches_table(all: &[Compared], goals: &[f64]) {
             if lost == 0 { format!("{:.1}", mean(&reached, f64::INFINITY)) } else { "-".to_owned() };
         let choices: usize = traces.iter().map(|t| t.progress.len()).sum();
         let time = 1e3 * traces.iter().map(|t| t.seconds).sum::<f64>() / choices.max(1) as f64;
-        println!("| {name} | {} | {average} | {} | {lost} | {time:.2} |", cells.join(" | "), pair(&ways, 1));
+        println!(
+            "| {name} | {} | {average} | {} | {lost} | {time:.2} |",
+            cells.join(" | "),
+            median_and_tail(&ways, 1)
+        );
     }
 }
 
@@ -52,7 +48,7 @@ pub(super) fn by_family(all: &[Compared], goal: f64) {
     for Compared { name, traces } in all {
         let of = |family: &Family| {
             let own: Vec<Trace> = traces.iter().filter(|t| t.family == *family).cloned().collect();
-            pair(&touches(&own, goal), 0)
+            median_and_tail(&touches(&own, goal), 0)
         };
         let cells: Vec<String> = Family::ALL.iter().map(of).collect();
         println!("| {name} | {} |", cells.join(" | "));
@@ -105,10 +101,10 @@ pub(super) fn distance_table(bodies: Bodies) -> Result<(), Failure> {
             let ways: Vec<Option<f64>> = traces.iter().map(|t| t.to(1.0).map(|(_, way)| way)).collect();
             format!(
                 "{} | {} of {} | {}",
-                pair(&reached, 0),
+                median_and_tail(&reached, 0),
                 reached.iter().flatten().count(),
                 reached.len(),
-                pair(&ways, 1)
+                median_and_tail(&ways, 1)
             )
         });
         let name = if flat.name == round.name { flat.name } else { "area-, volume-greedy" };

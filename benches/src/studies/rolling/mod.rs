@@ -3,7 +3,7 @@
 //! Usage: `rolling [EACH [FIRST]]`: bodies of each family (10) and the first of their seeds. Prints docs/rolling.md.
 
 use recon_benches::reaching::Bodies;
-use recon_benches::reaching::statistics::{quantile, ratio_of_medians};
+use recon_benches::reaching::statistics::{median_and_tail, quantile, ratio_of_medians};
 use recon_benches::rolling::{LOOKAHEAD, Noisy, PLANNERS, Rolling, runs};
 use recon_benches::rows::is_part;
 
@@ -59,7 +59,7 @@ pub(crate) fn main() -> Result<(), Failure> {
         let all = runs.len();
         println!(
             "| {name} | {} | {reached} of {all} | {:.0} | {holds} of {all} |",
-            pair(&to(runs, 0.15, 0)),
+            median_and_tail(&to(runs, 0.15, 0), 1),
             quantile(&contacts, 0.5)
         );
     }
@@ -77,7 +77,7 @@ fn lookahead(all: &[([usize; 2], Vec<Rolling>)]) {
     );
     let Some((_, cheapest)) = all.first() else { return };
     for ([horizon, drawn], runs) in all {
-        let ways = [0.2, 0.1, 0.05].map(|gap| pair(&to(runs, gap, 0)));
+        let ways = [0.2, 0.1, 0.05].map(|gap| median_and_tail(&to(runs, gap, 0), 1));
         let (ratio, [low, high]) = ratio_of_medians(&to(runs, 0.1, 0), &to(cheapest, 0.1, 0));
         let motions: usize = runs.iter().map(|r| r.motions).sum();
         println!(
@@ -101,14 +101,6 @@ fn to(runs: &[Rolling], gap: f64, what: usize) -> Vec<Option<f64>> {
     runs.iter().map(|r| r.to(gap).map(|way| way[what])).collect()
 }
 
-fn pair(values: &[Option<f64>]) -> String {
-    let one = |share: f64| match quantile(values, share) {
-        v if v.is_finite() => format!("{v:.1}"),
-        _ => "-".to_owned(),
-    };
-    format!("{} / {}", one(0.5), one(0.9))
-}
-
 fn heads() -> String {
     GAPS.map(|g| format!("{:.0} %", 100.0 * g)).join(" | ")
 }
@@ -120,7 +112,7 @@ fn ways(all: &[Compared], what: usize, title: &str) {
         "---|".repeat(GAPS.len())
     );
     for (name, runs) in all {
-        println!("| {name} | {} |", GAPS.map(|g| pair(&to(runs, g, what))).join(" | "));
+        println!("| {name} | {} |", GAPS.map(|g| median_and_tail(&to(runs, g, what), 1)).join(" | "));
     }
     println!();
 }

@@ -4,7 +4,7 @@
 //! seed of both; without bodies nothing is compared. Made in parts. Prints docs/rolling-sensed.md.
 
 use exploration::rolling::{InformationRate, LargestGap, PalmSweep, RandomTurns, RollPlanner};
-use recon_benches::reaching::statistics::{interval, quantile, ratio_of_medians};
+use recon_benches::reaching::statistics::{interval, median_and_tail, quantile, ratio_of_medians};
 use recon_benches::rolling_sensed::{End, Run, RunError, Setting, run};
 use recon_benches::rows::RowsError;
 
@@ -112,21 +112,13 @@ fn way(runs: &[Kept], gap: usize, what: usize) -> Vec<Option<f64>> {
     runs.iter().map(|r| Some(r.to[gap][what]).filter(|w| w.is_finite())).collect()
 }
 
-fn pair(values: &[Option<f64>]) -> String {
-    let one = |share: f64| match quantile(values, share) {
-        v if v.is_finite() => format!("{v:.1}"),
-        _ => "-".to_owned(),
-    };
-    format!("{} / {}", one(0.5), one(0.9))
-}
-
 fn ended(runs: &[Kept], end: End) -> usize {
     runs.iter().filter(|r| ENDS.get(r.end) == Some(&end)).count()
 }
 
 /// Median and 90 % to each gap, how the runs ended, and in how many the bounds held at every look.
 fn row(name: &str, runs: &[Kept], what: usize) -> String {
-    let ways: Vec<String> = (0..GAPS.len()).map(|gap| pair(&way(runs, gap, what))).collect();
+    let ways: Vec<String> = (0..GAPS.len()).map(|gap| median_and_tail(&way(runs, gap, what), 1)).collect();
     let ends: Vec<String> = ENDS.iter().map(|end| ended(runs, *end).to_string()).collect();
     let holds = runs.iter().filter(|r| r.holds).count();
     let mean = |sum: usize| sum as f64 / runs.len().max(1) as f64;
@@ -199,7 +191,7 @@ fn lookahead(seeds: &std::ops::Range<u64>) -> Result<(), Why> {
             Box::new(InformationRate::new(s, horizon).per_radian().with_bodies(bodies))
         };
         let runs = all(&make, seeds.clone(), FINE)?;
-        let ways: Vec<String> = (0..GAPS.len()).map(|gap| pair(&way(&runs, gap, 0))).collect();
+        let ways: Vec<String> = (0..GAPS.len()).map(|gap| median_and_tail(&way(&runs, gap, 0), 1)).collect();
         let choice: Vec<Option<f64>> = runs.iter().map(|r| Some(r.choice)).collect();
         println!(
             "| {horizon} | {bodies} | {} | {} | {:.0} |",
