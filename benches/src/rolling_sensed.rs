@@ -103,6 +103,8 @@ pub struct Setting {
     pub friction: f64,
     /// Gap that is asked for.
     pub gap: f64,
+    /// Motions at most.
+    pub motions: usize,
 }
 
 /// How a run ended.
@@ -174,7 +176,7 @@ pub fn run(make: &dyn Fn(u64) -> Box<dyn RollPlanner>, seed: u64, of: Setting) -
     let mut hands = hands.with_noise([of.contact * SIZE, of.force * MASS * GRAVITY], seed);
     let first = hands.start_phi();
     let sensors = hands.sensors(1e-6 * (SIZE * GRAVITY).sqrt());
-    let roll = RollTask { motions: 25, radians: 40.0, ..RollTask::new(Goal::Gap(of.gap), workspace) };
+    let roll = RollTask { motions: of.motions, radians: 40.0, ..RollTask::new(Goal::Gap(of.gap), workspace) };
     let task = SensedTask { roll, sensors, level: 0.95 };
     let mut planner = Timed { inner: make(seed), seconds: 0.0 };
     let (mut steps, mut holds, mut motions, mut doubts) = (Vec::new(), true, 0, 0);

@@ -104,7 +104,9 @@ pub(super) fn far_motion(
         if most < least {
             continue;
         }
-        let good = (0..places.len()).filter(|k| gains[*k] >= (SHARE * most).max(least));
+        let worth = |k: &usize| gains[*k] >= (SHARE * most).max(least) && gains[*k] > 0.0;
+        // The first one is where the palms are.
+        let good = (1..places.len()).filter(worth);
         let Some(to) = good.min_by(|a, b| places[*a].way.total_cmp(&places[*b].way)) else { continue };
         let proposal = proposed(view, belief, legs(&places, to));
         let gain = |p: &RollProposal| p.expected.map_or(0.0, |e| e.gain);

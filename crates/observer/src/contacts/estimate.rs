@@ -1,4 +1,5 @@
 use super::axes::ANY_TURN;
+use super::beginning::Beginning;
 use super::body::{Body, CONSTANTS};
 use super::cold;
 use super::explanations::explanations;
@@ -113,8 +114,35 @@ pub fn estimate_contacts(
     modes: Option<&[[ContactMode; MOST_PALMS]]>,
     options: &ContactOptions,
 ) -> Result<ContactEstimate, ContactEstimateError> {
+    estimate(log, modes, options, None)
+}
+
+/// [`estimate_contacts`] of a log of whose first samples the motion is known: it is carried on to the others, in a fraction of the time that a search from
+/// nothing takes.
+///
+/// Whether the log leaves other motions as probable is not asked again: what left none does not with more readings.
+///
+/// # Errors
+/// As [`estimate_contacts`]; [`ContactEstimateError::Lost`] where the motion cannot be carried on.
+pub fn estimate_contacts_from(
+    beginning: &Beginning,
+    log: &ContactLog,
+    options: &ContactOptions,
+) -> Result<ContactEstimate, ContactEstimateError> {
+    estimate(log, None, options, Some(beginning))
+}
+
+fn estimate(
+    log: &ContactLog,
+    modes: Option<&[[ContactMode; MOST_PALMS]]>,
+    options: &ContactOptions,
+    beginning: Option<&Beginning>,
+) -> Result<ContactEstimate, ContactEstimateError> {
     options.check()?;
     check(log, modes, options)?;
+    if beginning.is_some_and(|of| of.samples() > log.times().len()) {
+        return Err(ContactEstimateError::Lost);
+    }
     let record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
@@ -122,7 +150,7 @@ pub fn estimate_contacts(
     let rough = options.with_noise(rougher);
     let again = if rough == *options { None } else { Record::new(log, &rough) };
     let record = again.unwrap_or(record);
-    let source = Source { log, options: &rough, units };
+    let source = Source { log, options: &rough, units, beginning };
     let mut record = source.with_blows(record);
     let mut found = match modes {
         Some(modes) => source.with_modes(&mut record, modes.to_vec(), true)?.0,
@@ -138,6 +166,8 @@ struct Source<'a> {
     log: &'a ContactLog,
     options: &'a ContactOptions,
     units: Units,
+    /// What is known of the motion at the first samples.
+    beginning: Option<&'a Beginning>,
 }
 
 /// Samples at which the motion contradicts that a contact sticks, and the palm.
@@ -209,7 +239,10 @@ impl Source<'_> {
         let problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let exact = problem.exact && log.frictionless() && !options.planar;
         let stage = self.solved(problem, log, (&averaged, thinned.is_some()));
-        let mut stage = stage.ok_or(ContactEstimateError::Singular)?;
+        let mut stage = stage.ok_or(match self.beginning {
+            Some(_) => ContactEstimateError::Lost,
+            None => ContactEstimateError::Singular,
+        })?;
         let covariances = stage.covariances().ok_or(ContactEstimateError::Singular)?;
         let (problem, solved) = (&stage.problem, &stage.solved);
         let shortest = match exact {
@@ -264,13 +297,18 @@ impl Source<'_> {
         let Self { options: ContactOptions { planar, guessed_floor, noise, body, .. }, .. } = self;
         // Conditions of exact logs are as good as what is left of them, unless it was said what they are off by.
         let (exact, sharp) = (problem.exact, problem.exact && *guessed_floor);
-        let mut stage = Stage::searched(problem)?.shared()?;
+        let begun = match self.beginning {
+            Some(beginning) => Stage::resumed(problem, beginning),
+            None => Stage::searched(problem),
+        };
+        let mut stage = begun?.shared()?;
         if !sharp {
             stage = stage.stated()?;
         }
         let worth = stage.solved.explained() || !exact && is_short(&stage.problem);
         if !planar && log.frictionless() && worth {
             stage = match exact {
+                false if self.beginning.is_some() => stage,
                 false => stage.decided()?,
                 true if sharp => stage.blunted()?,
                 true => stage,
@@ -290,7 +328,7 @@ impl Source<'_> {
         stage = stage.finished()?;
         if *planar {
             let still = still(log);
-            stage = if still.is_none() { stage.decided()? } else { stage };
+            stage = if still.is_none() && self.beginning.is_none() { stage.decided()? } else { stage };
             stage.open = stage.open.or(still);
             stage = if exact { stage } else { stage.blurred()? };
         }

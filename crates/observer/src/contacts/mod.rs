@@ -28,6 +28,7 @@
 
 mod axes;
 mod backwards;
+mod beginning;
 mod between;
 mod body;
 mod changed;
@@ -88,7 +89,8 @@ mod verdict;
 mod widened;
 mod windows;
 
-pub use estimate::{ContactEstimate, estimate_contacts};
+pub use beginning::Beginning;
+pub use estimate::{ContactEstimate, estimate_contacts, estimate_contacts_from};
 pub use mode_odds::EstimatedModes;
 pub use noise::{ContactNoiseLevel, ImpulseNoise};
 pub use options::{ContactEstimateError, ContactOptions};

@@ -6,11 +6,13 @@
 //! A window tells little of a body, and its axes drift from one to the next. All that was gone through is therefore solved at quarters of quarters of the record,
 //! and the windows after know the body from there: the last solution then begins beside where it ends.
 
+use super::beginning::Beginning;
 use super::body::CONSTANTS;
 use super::first::First;
 use super::problem::{Beforehand, Problem, Unknowns};
 use super::search::{ENOUGH, Ended, fine, fine_nodes, fine_within, refined, whole};
 use super::solve::{Solved, solve};
+use super::state::Motion;
 use std::ops::Range;
 
 /// Natural times of the window that a motion is solved over as it is carried on.
@@ -48,21 +50,42 @@ pub(super) fn is_too_long(problem: &Problem) -> bool {
 
 /// A solution of all of a record. None of one that lasts otherwise, or where no beginning is explained or a motion cannot be carried on.
 pub(super) fn onward(problem: &mut Problem, way: &Way) -> Option<Ended> {
-    let natural = problem.units.length / problem.units.speed;
-    let record = problem.record;
-    let times = &record.times;
     if !way.lasts.contains(&problem.lasts()) {
         return None;
     }
     let nodes = fine_nodes(problem);
-    let (mut unknowns, mut iterations) = beginning(problem, &nodes, way)?;
+    let begun = beginning(problem, &nodes, way)?;
+    carried_on(problem, nodes, begun, way.onward)
+}
+
+/// A solution of all of a record whose motion is known at its first samples. None where it is not known there, or cannot be carried on.
+pub(super) fn resumed(problem: &mut Problem, from: &Beginning) -> Option<Ended> {
+    let nodes = fine_nodes(problem);
+    let body = from.body(problem);
+    let motion = |&k: &usize| from.motion(problem.record.samples[k], problem.record.origin, &body);
+    let motions: Vec<Motion> = nodes.iter().map_while(motion).collect();
+    if motions.is_empty() {
+        return None;
+    }
+    carried_on(problem, nodes, (Unknowns { motions, body }, 0), LONG.onward)
+}
+
+/// From motions at the first of `nodes`, found in so many linearisations, to a solution at all of them, so many natural times at once.
+fn carried_on(
+    problem: &mut Problem,
+    nodes: Vec<usize>,
+    (mut unknowns, mut iterations): (Unknowns, usize),
+    onward: f64,
+) -> Option<Ended> {
+    let natural = problem.units.time();
+    let times = &problem.record.times;
     let last = nodes.len() - 1;
     // The last solution is of four times as many nodes as the one before, and so on.
     let mut next = last >> (2 * (last / unknowns.motions.len()).max(1).ilog(4));
     let mut known = None;
     while unknowns.motions.len() <= last {
         let at = unknowns.motions.len() - 1;
-        let end = until(problem, &nodes, at, way.onward).max(at + 1);
+        let end = until(problem, &nodes, at, onward).max(at + 1);
         let motion = unknowns.motions[at];
         unknowns.motions.extend(problem.carried(nodes[at], motion, &unknowns.body, &nodes[at + 1..=end]));
         let window = if known.is_some() { WINDOW_OF_KNOWN } else { WINDOW };

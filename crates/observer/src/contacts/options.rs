@@ -48,6 +48,12 @@ pub enum ContactEstimateError {
         /// Samples of the log.
         samples: usize,
     },
+    /// A motion at the first samples that leads nowhere.
+    #[error(
+        "the motion that is known at the first samples cannot be carried on to the others: it is another body's or another log's, or something happened that \
+         the sensors did not tell; estimate the whole log from nothing"
+    )]
+    Lost,
     /// Numbers beyond all bounds.
     #[error(
         "no start leads to a motion that explains the log: its least squares leave all numbers or are singular; check units, frames and noise"

@@ -54,12 +54,16 @@ fn swell() -> SVector<f64, CONSTANTS> {
     SVector::from_fn(|i, _| if i == 1 || i == 3 { 1.0 } else { 0.0 })
 }
 
+/// A body of the mass of `of` whose moments are all the one about y.
+pub(super) fn ball(of: &Body) -> Body {
+    let ball = MassProperties::from_principal(of.log_mass.exp(), DVec3::splat(of.inertia().y_axis.y));
+    ball.map_or(*of, |ball| Body::turned(&ball, DQuat::IDENTITY))
+}
+
 /// A body of the mass and the moment of inertia about y of `of`, as it is known beforehand: by the deviations of the logarithms of its mass and
 /// of the root of that moment. What else there is of an inertia does not show in the plane and is held.
 pub(super) fn body(of: &Body, mass: f64, root: f64) -> (Body, OfBody) {
-    let moment = of.inertia().y_axis.y;
-    let ball = MassProperties::from_principal(of.log_mass.exp(), DVec3::splat(moment));
-    let body = ball.map_or(*of, |ball| Body::turned(&ball, DQuat::IDENTITY));
+    let body = ball(of);
     let swell = swell() / swell().norm();
     let mut information = (OfBody::identity() - swell * swell.transpose()) * KNOWN.powi(-2);
     // Both of the roots change by as much.

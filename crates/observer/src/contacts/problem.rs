@@ -15,6 +15,7 @@ use crate::rigid::exponential;
 use contact_kinematics::{at_once, is_stopped};
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector, Vector6};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Links are never taken for better than this share of a condition's deviation, all together: without noise of the forces the
@@ -447,7 +448,14 @@ impl Problem<'_> {
     }
 
     /// Equations without what keeps the frozen combinations.
-    pub(super) fn unfrozen(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Equations<CONSTANTS> {
+    pub(super) fn unfrozen<'e>(
+        &self,
+        equations: &'e Equations<CONSTANTS>,
+        at: &Unknowns,
+    ) -> Cow<'e, Equations<CONSTANTS>> {
+        if self.frozen.is_empty() {
+            return Cow::Borrowed(equations);
+        }
         let mut free = equations.clone();
         let (d, slope) = (at.body.from(&self.body.0), at.body.slope_from(&self.body.0));
         for combination in &self.frozen {
@@ -455,7 +463,7 @@ impl Problem<'_> {
             free.body -= g * g.transpose() * FROZEN;
             free.body_gradient -= g * (FROZEN * combination.dot(&d));
         }
-        free
+        Cow::Owned(free)
     }
 
     /// With what keeps the frozen combinations.

@@ -12,6 +12,7 @@ use super::record::{Contact, Interval, Record, Wrench};
 use super::samples::deviations;
 use super::solve::{Covariances, Solved, solve};
 use crate::random::Normal;
+use contact_kinematics::at_once;
 use glam::DVec3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 
@@ -21,8 +22,8 @@ pub(super) const SMALL: f64 = 0.02;
 /// How often noise is drawn for what is reported of a whole log, and for what is asked on the way.
 pub(super) const DRAWS: usize = 12;
 pub(super) const FEW_DRAWS: usize = 4;
-/// The same where there is friction: each sample has a node then, and a solution takes long.
-const DRAWS_OF_FRICTION: usize = 6;
+/// The same where there is friction, or blows: nearly each sample has a node then, and a solution takes long.
+const DRAWS_OF_MANY_NODES: usize = 6;
 const SEED: u64 = 0x2d0;
 /// How much noise is drawn, of what there is: a part of it, as that which was there already has carried a body along a valley.
 const AMOUNT: f64 = 0.7;
@@ -41,15 +42,22 @@ impl Covariances<CONSTANTS> {
         if linear || problem.planar && !problem.record.frictionless() {
             return self;
         }
-        let draws = if problem.record.frictionless() { draws } else { draws.min(DRAWS_OF_FRICTION) };
+        let many =
+            !problem.record.frictionless() || problem.record.intervals.iter().any(|interval| interval.blow);
+        let draws = if many { draws.min(DRAWS_OF_MANY_NODES) } else { draws };
         let mut random = Normal::seeded(SEED);
-        let one = |_: usize| {
-            let record = problem.record.redrawn(problem, &mut random);
-            let drawn = problem.on(&record);
+        let one = |record: &Record| {
+            let drawn = problem.on(record);
             let found = solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), MOST, ENOUGH)?.unknowns;
             Some(Unknowns { motions: drawn.at_samples(&found), ..found })
         };
-        let all: Vec<Unknowns> = (0..draws).filter_map(one).collect();
+        // Two at a time.
+        let mut all: Vec<Unknowns> = Vec::with_capacity(draws);
+        for _ in 0..draws / 2 {
+            let [a, b] = std::array::from_fn(|_| problem.record.redrawn(problem, &mut random));
+            let (a, b) = at_once(|| one(&a), || one(&b));
+            all.extend([a, b].into_iter().flatten());
+        }
         let own = &Unknowns { motions: problem.at_samples(&solved.unknowns), ..solved.unknowns.clone() };
         let mean = |of: &dyn Fn(&Unknowns) -> f64| all.iter().map(of).sum::<f64>() / all.len().max(1) as f64;
         let wider = SVector::<f64, CONSTANTS>::from_fn(|i, _| {

@@ -1,9 +1,11 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
 use super::axes::{Oriented, against_by_cost, known_motion, with_any_axes};
+use super::beginning::Beginning;
 use super::body::CONSTANTS;
 use super::directly::directly;
 use super::explanations::FreeBody;
+use super::onward::resumed;
 use super::plane;
 use super::problem::{Beforehand, Problem};
 use super::record::Record;
@@ -110,6 +112,12 @@ impl<'a> Stage<'a> {
     /// What a search comes to.
     pub(super) fn searched(mut problem: Problem<'a>) -> Option<Self> {
         let ended = search(&mut problem)?;
+        Some(Self::at(problem, ended))
+    }
+
+    /// What a motion at the first samples is carried on to.
+    pub(super) fn resumed(mut problem: Problem<'a>, from: &Beginning) -> Option<Self> {
+        let ended = resumed(&mut problem, from)?;
         Some(Self::at(problem, ended))
     }
 

@@ -18,7 +18,7 @@ pub(super) fn surprise(problem: &mut Problem, solved: &Solved<CONSTANTS>) -> f64
         return solved.equations.cost;
     }
     // What is held of the body is so for the search alone.
-    let equations = problem.unfrozen(&solved.equations, &solved.unknowns);
+    let equations = problem.unfrozen(&solved.equations, &solved.unknowns).into_owned();
     let free = Solved { equations, unknowns: solved.unknowns.clone(), ..*solved };
     let frozen = std::mem::take(&mut problem.frozen);
     let all = of_all_near(problem, &free).map(|all| all + solved.equations.cost);

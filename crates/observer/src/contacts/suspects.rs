@@ -24,6 +24,7 @@ use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::{PalmSurface, at_once};
 use glam::DVec3;
 use object_dynamics::ContactLog;
+use std::borrow::Cow;
 
 /// What of the information on a constant must be left when motion and body have followed it, for the data to tell of it.
 const LEAST_LEFT: f64 = 1e-6;
@@ -110,7 +111,7 @@ pub(super) struct Scores<'a> {
     sensors: &'a Sensors<'a>,
     problem: &'a Problem<'a>,
     solved: &'a Solved<CONSTANTS>,
-    equations: Equations<CONSTANTS>,
+    equations: Cow<'a, Equations<CONSTANTS>>,
     solver: Reduced<CONSTANTS>,
     followed: Step<CONSTANTS>,
     conditions: Conditions,

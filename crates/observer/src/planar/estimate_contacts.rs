@@ -1,13 +1,13 @@
 //! The estimate from contacts of any palms ([`estimate_contacts`]) in the plane.
 
-use crate::contacts::estimate_contacts;
 use crate::contacts::{
-    ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions, EstimatedModes,
+    Beginning, ContactEstimate, ContactEstimateError, ContactEvidence, ContactNoiseLevel, ContactOptions,
+    EstimatedModes, estimate_contacts, estimate_contacts_from,
 };
 use crate::faults::{Explanation, Suspect};
 use crate::reliability::Reliability;
-use glam::{DVec2, DVec3};
-use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, in_plane};
+use glam::{DMat3, DVec2, DVec3};
+use object_dynamics::planar::{BodyState, ContactLog, PlanarMass, PlanarTruth, in_plane};
 use object_dynamics::{ContactLogError, ContactMode, LoggedPalm, MOST_PALMS, MassError, MassProperties};
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
@@ -123,6 +123,20 @@ pub fn estimate_plane(log: &ContactLog, options: &PlaneOptions) -> Result<PlaneE
     Ok(PlaneEstimate::of_space(found, &in_space))
 }
 
+/// [`estimate_plane`] of a log of whose first samples the motion is known: it is carried on to the others ([`estimate_contacts_from`]).
+///
+/// # Errors
+/// [`PlaneEstimateError`].
+pub fn estimate_plane_from(
+    beginning: &Beginning,
+    log: &ContactLog,
+    options: &PlaneOptions,
+) -> Result<PlaneEstimate, PlaneEstimateError> {
+    let in_space = log.in_space(&options.friction)?;
+    let found = estimate_contacts_from(beginning, &in_space, &options.in_space()?)?;
+    Ok(PlaneEstimate::of_space(found, &in_space))
+}
+
 impl PlaneOptions {
     /// The same for the log in space; the coefficients of friction stand in that log itself.
     ///
@@ -145,6 +159,14 @@ impl PlaneOptions {
 }
 
 impl PlaneEstimate {
+    /// What it tells of a log that goes on after its last sample; none where it is not to be relied on.
+    #[must_use]
+    pub fn beginning(&self) -> Option<Beginning> {
+        let inertia = DMat3::from_diagonal(DVec3::splat(self.inertia.0));
+        let states = || self.states.iter().map(|state| PlanarTruth::from(*state).in_space()).collect();
+        self.reliability.is_reliable().then(|| Beginning::new(states(), self.mass.0, inertia))
+    }
+
     /// In the plane, of what was estimated from a log in space ([`ContactLog::in_space`]) of a motion that is held in a plane.
     #[must_use]
     pub fn of_space(of: ContactEstimate, log: &object_dynamics::ContactLog) -> Self {

@@ -47,7 +47,7 @@ pub use authors::{AuthorsFields, AuthorsState};
 pub use error::PlanarEstimateError;
 pub use estimate_contacts::{
     PlaneContact, PlaneDeviations, PlaneEstimate, PlaneEstimateError, PlaneOptions, estimate_plane,
-    plane_noise,
+    estimate_plane_from, plane_noise,
 };
 pub use observability::{LONGEST_CHAIN, LieField, NaturalUnits, Observability};
 pub use quasistatic::{

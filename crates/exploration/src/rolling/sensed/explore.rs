@@ -18,7 +18,8 @@ use crate::planar::PlanarKnowledge;
 use crate::planner::Reason;
 use glam::DVec2;
 use object_dynamics::planar::{ContactLog, PlanarMass};
-use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
+use observer::contacts::Beginning;
+use observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, estimate_plane_from};
 use observer::reliability::Reliability;
 use shape_bounds::exact_hull::planar::Direction;
 use thiserror::Error;
@@ -101,6 +102,8 @@ struct Loop<'a> {
     task: &'a SensedTask,
     confidence: Confidence,
     look: Option<Look>,
+    /// What the last estimate that was relied on tells of the log as it goes on.
+    beginning: Option<Beginning>,
     /// Estimates since then that were not relied on, and why the last one was not.
     doubts: usize,
     doubt: Option<String>,
@@ -130,10 +133,21 @@ impl Loop<'_> {
 
     /// What a log tells, or why it is not relied on.
     fn seen(&mut self, log: &ContactLog, palms: [f64; 2]) -> Result<Look, String> {
-        let estimate = estimate_plane(log, &self.task.sensors).map_err(|error| error.to_string())?;
+        let sensors = &self.task.sensors;
+        let estimate = match &self.beginning {
+            Some(beginning) => estimate_plane_from(beginning, log, sensors),
+            None => estimate_plane(log, sensors),
+        };
+        let estimate = estimate.map_err(|error| error.to_string())?;
         if let Reliability::Unreliable(reasons) = &estimate.reliability {
             return Err(reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
         }
+        // What some samples contradict is wrong of the body, maybe, and then of all samples.
+        let (all, relied) = (estimate.relied_on.len(), estimate.relied_on.iter().filter(|r| **r).count());
+        if relied < all {
+            return Err(format!("noise does not explain what is left at {} of {all} samples", all - relied));
+        }
+        self.beginning = estimate.beginning();
         self.deviations = estimate.deviations.last().map(|d| [d.p_WCm.length(), d.phi0]);
         let share = self.confidence.share(self.looks).map_err(|error| error.to_string())?;
         let levels = (1.0 - share, self.confidence.level());
@@ -256,6 +270,7 @@ pub fn explore_sensed(
         task,
         confidence,
         look: None,
+        beginning: None,
         doubts: 0,
         doubt: None,
         deviations: None,
