@@ -105,8 +105,8 @@ impl EstimateData {
         let p_WCm = self.estimate.states[k].p_WCm;
         let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, p_WCm)).collect();
         let (mut lines, front) = palms(view, &shown, p_WCm, reach);
-        lines.extend(self.paths(k, view));
-        lines.extend(self.object(k, view));
+        lines.extend(self.paths(k, reach, view));
+        lines.extend(self.object(k, reach, view));
         lines.extend(front);
         lines.push(Line::centre(view.place(p_WCm)));
         for palm in self.log.palms() {
@@ -124,7 +124,7 @@ impl EstimateData {
     }
 
     /// Where the palms were touched until sample `k`, moved with them.
-    fn paths(&self, k: usize, view: &View) -> Vec<Line> {
+    fn paths(&self, k: usize, reach: f64, view: &View) -> Vec<Line> {
         let stride = self.log.times().len().div_ceil(TRACED);
         let path = |(i, palm): (usize, &LoggedPalm)| {
             let now = palm.motion(k).pose.at_rest();
@@ -132,18 +132,13 @@ impl EstimateData {
                 let touch = palm.touch(j)?;
                 Some(view.place(now.to_world(palm.motion(j).pose.at_rest().to_palm(touch.p_WC))))
             };
-            let places: Vec<Option<DVec2>> = (0..=k).step_by(stride).map(place).collect();
-            let pieces = places.split(Option::is_none).filter(|piece| piece.len() > 1);
-            let line = |piece: &[Option<DVec2>]| {
-                Line::new(&format!("path p{}", i + 1), piece.iter().copied().flatten().collect())
-            };
-            pieces.map(line).collect::<Vec<_>>()
+            Line::through(&format!("path p{}", i + 1), (0..=k).step_by(stride).map(place), reach)
         };
-        self.log.palms().iter().enumerate().flat_map(path).collect()
+        self.log.palms().iter().enumerate().filter_map(path).collect()
     }
 
     /// The silhouette of what the contacts span, and the contact curves where they are seen.
-    fn object(&self, k: usize, view: &View) -> Vec<Line> {
+    fn object(&self, k: usize, reach: f64, view: &View) -> Vec<Line> {
         let state = &self.estimate.states[k];
         let placed = |contact: &PalmContact| view.place(state.p_WCm + state.R_WO * contact.p_OC);
         let seen = |contact: &PalmContact| view.nearness(state.R_WO * contact.normal) >= 0.0;
@@ -152,11 +147,8 @@ impl EstimateData {
             let stride = curve.len().div_ceil(TRACED);
             let some: Vec<_> = curve.iter().step_by(stride).collect();
             all.extend(some.iter().filter_map(|contact| contact.as_ref()).map(placed));
-            let gap = |contact: &&Option<PalmContact>| !contact.as_ref().is_some_and(seen);
-            for piece in some.split(gap).filter(|piece| piece.len() > 1) {
-                let points = piece.iter().filter_map(|contact| contact.as_ref()).map(placed).collect();
-                traces.push(Line::new(&format!("trace p{}", i + 1), points));
-            }
+            let places = some.iter().map(|contact| contact.as_ref().filter(|c| seen(c)).map(placed));
+            traces.extend(Line::through(&format!("trace p{}", i + 1), places, reach));
         }
         let shape = self.true_shape.iter().flat_map(|shape| &shape.mesh.vertices);
         let shape: Vec<DVec2> = shape.map(|p| view.place(state.p_WCm + state.R_WO * *p)).collect();

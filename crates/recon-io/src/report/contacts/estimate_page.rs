@@ -11,7 +11,7 @@ use crate::planar_figures::FigurePanel;
 use recon::object_dynamics::Rhythm;
 use std::io::{self, Write};
 
-const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms.";
+const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms; in a long log dots.";
 const PATHS: &str = "Faint lines on the palms are where each was touched until then.";
 const CAPTION: &str = "Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Flat palms go on beyond what is drawn.";
 const TRUE_SHAPE: &str = " Dashed: the outline of the true shape, from the scene.";

@@ -28,20 +28,52 @@ const HEAD: f64 = 0.25;
 /// Times the median of all forces beyond which one is a blow, whose arrow is cut.
 const BLOW: f64 = 4.0;
 
-/// A line of a picture, in m on the plane of view.
+/// A line of a picture, in m on the plane of view, in pieces.
 pub(super) struct Line {
     pub(super) class: String,
-    pub(super) points: Vec<DVec2>,
+    pub(super) pieces: Vec<Vec<DVec2>>,
 }
+
+/// What is farther than this from one point of a curve to the next, in sizes of the object, is not drawn through: the curve was elsewhere in between.
+const APART: f64 = 0.25;
 
 impl Line {
     pub(super) fn new(class: &str, points: Vec<DVec2>) -> Self {
-        Self { class: class.to_owned(), points }
+        Self { class: class.to_owned(), pieces: vec![points] }
+    }
+
+    /// A curve through places, as far as there are any and they are near enough to each other for an object of this `size` (m); where hardly two
+    /// are, dots.
+    pub(super) fn through(
+        class: &str,
+        places: impl IntoIterator<Item = Option<DVec2>>,
+        size: f64,
+    ) -> Option<Self> {
+        let places: Vec<Option<DVec2>> = places.into_iter().collect();
+        let steps = || places.windows(2).filter_map(|of| Some(of[0]?.distance(of[1]?)));
+        let far = steps().filter(|step| *step > APART * size).count();
+        let dots = far > steps().count() / 5;
+        let (mut pieces, mut last): (Vec<Vec<DVec2>>, _) = (Vec::new(), None);
+        for place in places {
+            match (place, last) {
+                (Some(p), Some(before)) if !dots && p.distance(before) <= APART * size => {
+                    pieces.last_mut().into_iter().for_each(|piece| piece.push(p));
+                }
+                (Some(p), _) => pieces.push(vec![p]),
+                (None, _) => {}
+            }
+            last = place;
+        }
+        for piece in pieces.iter_mut().filter(|piece| piece.len() == 1) {
+            piece.push(piece[0]);
+        }
+        let class = if dots { format!("{class} dots") } else { class.to_owned() };
+        (!pieces.is_empty()).then_some(Self { class, pieces })
     }
 
     /// The palm `i` (from 0); lines that enclose nothing are `open`.
     pub(super) fn palm(i: usize, open: bool, points: Vec<DVec2>) -> Self {
-        Self { class: format!("palm p{}{}", i + 1, if open { " open" } else { "" }), points }
+        Self { class: format!("palm p{}{}", i + 1, if open { " open" } else { "" }), pieces: vec![points] }
     }
 
     /// The same before the object, which shows through.
@@ -52,7 +84,7 @@ impl Line {
     /// A contact.
     pub(super) fn touch(mode: ContactMode, at: DVec2) -> Self {
         // A line without length under a round cap is a dot.
-        Self { class: format!("touch m{}", mode.number()), points: vec![at, at] }
+        Self { class: format!("touch m{}", mode.number()), pieces: vec![vec![at, at]] }
     }
 
     /// The centre of mass.
@@ -164,7 +196,9 @@ struct Paper {
 impl Paper {
     /// On which all pictures have room.
     fn under<'a>(pictures: impl Iterator<Item = &'a Picture> + Clone) -> Self {
-        let points = || pictures.clone().flat_map(|picture| &picture.lines).flat_map(|line| &line.points);
+        let points = || {
+            pictures.clone().flat_map(|picture| &picture.lines).flat_map(|line| line.pieces.iter().flatten())
+        };
         let low = points().fold(DVec2::INFINITY, |low, p| low.min(*p));
         let high = points().fold(DVec2::NEG_INFINITY, |high, p| high.max(*p));
         let size = (high - low).max(DVec2::splat(f64::MIN_POSITIVE));
@@ -180,10 +214,13 @@ impl Paper {
         };
         let mut text = String::new();
         for line in &picture.lines {
-            let _ = write!(text, "<path class=\"{}\" d=\"M", line.class);
-            for (k, at) in line.points.iter().map(place).enumerate() {
-                text += if k > 0 { " L" } else { "" };
-                push_pair(&mut text, at, ' ');
+            let _ = write!(text, "<path class=\"{}\" d=\"", line.class);
+            for (i, piece) in line.pieces.iter().enumerate() {
+                text += if i > 0 { " M" } else { "M" };
+                for (k, at) in piece.iter().map(place).enumerate() {
+                    text += if k > 0 { " L" } else { "" };
+                    push_pair(&mut text, at, ' ');
+                }
             }
             text += "\"/>\n";
         }
@@ -274,7 +311,7 @@ mod tests {
     fn a_blow_leaves_the_arrows_of_other_forces_as_long_as_they_were() {
         let shaft = |scale: ForceScale, newton: f64| {
             let arrow = Line::force(DVec2::ZERO, DVec2::new(newton, 0.0), scale);
-            arrow.points[0].distance(arrow.points[1])
+            arrow.pieces[0][0].distance(arrow.pieces[0][1])
         };
         let forces = [0.0, 1.0, 1.5, 2.0, f64::NAN];
         let [calm, struck] =
@@ -284,5 +321,23 @@ mod tests {
         // What would leave the picture is cut.
         assert!((shaft(struck, 1e4) - LONGEST * 0.1).abs() < 1e-15);
         assert_eq!(shaft(ForceScale::new(0.1, [0.0].into_iter()), 1.0), 0.0);
+    }
+
+    /// Of a size of 1 m: what is near is joined, what is not stands alone, and nothing goes through a gap.
+    #[test]
+    fn a_curve_is_not_drawn_through_what_it_did_not_touch() {
+        let drawn = |places: &[Option<f64>]| {
+            let places = places.iter().map(|x| x.map(|x| DVec2::new(x, 0.0)));
+            let line = Line::through("trace", places, 1.0).unwrap();
+            let pieces = line.pieces.iter().map(|piece| piece.iter().map(|p| p.x).collect());
+            (line.class.clone(), pieces.collect::<Vec<Vec<f64>>>())
+        };
+        let near = [0.0, 0.1, 0.2, 0.3, 0.4, 1.0, 1.1].map(Some);
+        let gap = [near.as_slice(), &[None, Some(1.2)]].concat();
+        let pieces = vec![vec![0.0, 0.1, 0.2, 0.3, 0.4], vec![1.0, 1.1], vec![1.2, 1.2]];
+        assert_eq!(drawn(&gap), ("trace".to_owned(), pieces));
+        let dots = vec![vec![0.0, 0.0], vec![0.5, 0.5], vec![0.6, 0.6]];
+        assert_eq!(drawn(&[0.0, 0.5, 0.6].map(Some)), ("trace dots".to_owned(), dots));
+        assert!(Line::through("trace", [None, None], 1.0).is_none());
     }
 }

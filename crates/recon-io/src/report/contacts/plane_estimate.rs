@@ -17,7 +17,7 @@ use std::io::{self, Write};
 
 /// Points of a contact curve that are drawn at most.
 const TRACED: usize = 200;
-const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
+const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms; in a long log dots. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
 const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
 
 /// Everything that is told about a motion that was estimated in the plane.
@@ -151,10 +151,8 @@ impl PlaneEstimateData<'_> {
         let all: Vec<DVec2> = traces.iter().flatten().flatten().map(|contact| placed(contact)).collect();
         lines.extend(outline("object", &all));
         for (i, trace) in traces.iter().enumerate() {
-            for piece in trace.split(Option::is_none).filter(|piece| piece.len() > 1) {
-                let points = piece.iter().flatten().map(|contact| placed(contact)).collect();
-                lines.push(Line::new(&format!("trace p{}", i + 1), points));
-            }
+            let places = trace.iter().map(|contact| contact.map(placed));
+            lines.extend(Line::through(&format!("trace p{}", i + 1), places, reach));
         }
         lines.push(Line::centre(state.p_WCm));
         for now in &sample.palms {

@@ -62,10 +62,10 @@ fn the_page_is_whole_and_needs_nothing_else() {
     }
 }
 
-/// Points of the first line of a class, px.
+/// Points of the first piece of the first line of a class, px.
 fn line(page: &str, class: &str) -> Vec<[f64; 2]> {
     let opening = format!("class=\"{class}\" d=\"M");
-    let text = page.split(&opening).nth(1).unwrap().split('"').next().unwrap();
+    let text = page.split(&opening).nth(1).unwrap().split(['"', 'M']).next().unwrap().trim_end();
     let point = |p: &str| {
         let (x, y) = p.split_once(' ').unwrap();
         [x.parse().unwrap(), y.parse().unwrap()]
