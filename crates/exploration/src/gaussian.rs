@@ -52,6 +52,18 @@ impl<const D: usize> Kernel<D> {
 }
 
 impl<const D: usize> ImplicitSurface<D> {
+    /// From contacts anywhere, about their centre and scaled to a mean distance of one from it.
+    pub(crate) fn about(contacts: &[([f64; D], [f64; D])]) -> Option<Self> {
+        let mean = |of: &dyn Fn(&[f64; D]) -> f64| {
+            contacts.iter().map(|(point, _)| of(point)).sum::<f64>() / contacts.len() as f64
+        };
+        let centre: [f64; D] = std::array::from_fn(|i| mean(&|point| point[i]));
+        let from = |point: &[f64; D]| -> [f64; D] { std::array::from_fn(|i| point[i] - centre[i]) };
+        let radius = mean(&|point| from(point).iter().map(|c| c * c).sum::<f64>().sqrt());
+        let scaled: Vec<_> = contacts.iter().map(|(p, n)| (from(p).map(|c| c / radius), *n)).collect();
+        Self::new(&scaled)
+    }
+
     /// From contacts (points, outward unit normals); none if the matrix cannot be factored.
     pub(crate) fn new(contacts: &[([f64; D], [f64; D])]) -> Option<Self> {
         let (count, block) = (contacts.len(), D + 1);

@@ -55,6 +55,7 @@ pub mod relief;
 pub mod rolling;
 pub mod space;
 mod theory;
+pub mod touching;
 
 pub use certificate::{Certificate, Outcome, Shortfall};
 pub use confidence::{Confidence, ConfidenceError, Spending};

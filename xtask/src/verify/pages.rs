@@ -10,7 +10,7 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 const WIDTHS: [u32; 2] = [400, 1400];
 
 /// Commands in their order, each with the page that it makes.
-const PAGES: [(&str, Option<&str>); 10] = [
+const PAGES: [(&str, Option<&str>); 11] = [
     ("init start", None),
     ("reconstruct start/log.csv --scene start/scene.toml -o planes", Some("planes/report.html")),
     (
@@ -20,6 +20,7 @@ const PAGES: [(&str, Option<&str>); 10] = [
     ("bounds start/contacts.csv --fit auto -o bounds", Some("bounds/report.html")),
     ("bounds start/contacts.csv --concave -o concave", Some("concave/report.html")),
     ("explore start/scene.toml --until gap=0.5 -o explored", Some("explored/report.html")),
+    ("explore start/scene.toml --rolling --until gap=0.5 -o rolled", Some("rolled/report.html")),
     ("batch start --scene start/scene.toml -o many", Some("many/index.html")),
     ("planar -o plane", Some("plane/report.html")),
     ("demo --scene pick-up -o simulated", Some("simulated/report.html")),

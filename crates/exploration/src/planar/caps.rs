@@ -2,6 +2,7 @@
 
 use super::knowledge::Prospects;
 use crate::limits::Limits;
+use crate::touching::Candidate;
 use glam::DVec2;
 use shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
 use shape_bounds::planar::ShapeBounds;
@@ -11,36 +12,12 @@ const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
 /// Mean over [`HEIGHTS`] of the share of a triangle that a touch along the normal of its base takes off: `s` at the bottom, and
 /// `(1 - s)^2` at the top.
 const OF_A_TRIANGLE: f64 = 0.5 + 35.0 / 108.0;
-/// Directions out of reach that are named.
-const NAMED: usize = 8;
-
-/// A touch that may be made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
-    pub(super) along: Direction,
-    /// From the upper bound to the lower one.
-    pub(super) ray: [DVec2; 2],
-    /// Expected loss of area between the bounds in m^2, or length of the gap in m.
-    pub(super) score: f64,
-}
-
-/// Candidates within reach, in a fixed order, and the best ones out of reach.
-#[derive(Default)]
-pub(super) struct Candidates {
-    pub(super) within: Vec<Candidate>,
-    pub(super) out_of_reach: Vec<Candidate>,
-}
+pub(super) type Candidates = crate::touching::Candidates<Direction, DVec2>;
 
 impl Candidates {
-    pub(super) fn named_out_of_reach(&self) -> Vec<Vec<f64>> {
-        let mut lost = self.out_of_reach.clone();
-        lost.sort_by(|a, b| b.score.total_cmp(&a.score));
-        lost.iter().take(NAMED).map(|c| c.along.get().to_array().to_vec()).collect()
-    }
-
     fn take(
         &mut self,
-        candidate: Candidate,
+        candidate: Candidate<Direction, DVec2>,
         prospects: &Prospects<'_>,
         limits: &Limits<Direction>,
         score: impl Fn(Direction) -> f64,
@@ -65,7 +42,7 @@ pub(super) fn by_area(
     prospects: &Prospects<'_>,
     limits: &Limits<Direction>,
 ) -> Candidates {
-    let mut found = Candidates::default();
+    let mut found = Candidates::none();
     let (Some(lower), Some(upper)) = (bounds.lower().polygon(), bounds.upper().bounded()) else {
         // Without a lower bound of any area the farthest corner is the best there is.
         return by_distance(bounds, prospects, limits);
@@ -89,7 +66,7 @@ pub(super) fn by_distance(
     prospects: &Prospects<'_>,
     limits: &Limits<Direction>,
 ) -> Candidates {
-    let mut found = Candidates::default();
+    let mut found = Candidates::none();
     let gaps = bounds.gaps();
     let middle = gaps.iter().map(|gap| gap.inner).sum::<DVec2>() / gaps.len().max(1) as f64;
     for gap in gaps {

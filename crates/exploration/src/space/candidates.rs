@@ -3,6 +3,7 @@
 use super::cap::{Caps, Growth};
 use super::knowledge::Prospects;
 use crate::limits::Limits;
+use crate::touching::{Candidate, Score};
 use contact_kinematics::Direction;
 use glam::DVec3;
 use shape_bounds::exact_hull::{Polyhedron, SolidHull, SupportWalk};
@@ -12,43 +13,7 @@ use shape_bounds::{Gap, ShapeBounds};
 const HEIGHTS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
 /// Corners of which the exact score is looked at. With fewer, all are; with more, those with the largest cells.
 const SCORED: usize = 200;
-/// Directions out of reach that are named.
-const NAMED: usize = 8;
-
-/// A touch that may be made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Candidate {
-    pub(super) along: Direction,
-    /// From the upper bound to a point between contacts: not to the nearest point of the lower bound, which may be a contact, that a
-    /// ray would only meet again.
-    pub(super) ray: [DVec3; 2],
-    /// Expected loss of volume between the bounds in m^3, or length of the gap in m.
-    pub(super) score: f64,
-}
-
-/// What is scored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Score {
-    /// Expected loss of volume.
-    Volume,
-    /// Distance of a corner of the upper bound from the lower one.
-    Distance,
-}
-
-/// Candidates within reach, in a fixed order, and the directions of the best ones out of reach.
-pub(super) struct Candidates {
-    pub(super) within: Vec<Candidate>,
-    pub(super) out_of_reach: Vec<Candidate>,
-}
-
-impl Candidates {
-    /// Directions that would pay and cannot be had, the best first.
-    pub(super) fn named_out_of_reach(&self) -> Vec<Vec<f64>> {
-        let mut lost = self.out_of_reach.clone();
-        lost.sort_by(|a, b| b.score.total_cmp(&a.score));
-        lost.iter().take(NAMED).map(|c| c.along.get().to_array().to_vec()).collect()
-    }
-}
+pub(super) type Candidates = crate::touching::Candidates<Direction, DVec3>;
 
 /// All candidates: towards each corner of the upper bound from its nearest point of the lower one, and along the normal of each
 /// facet of the lower one.
@@ -62,7 +27,7 @@ pub(super) fn candidates(
     let corners = largest_cells(upper, score);
     let gaps = bounds.gaps_at(&corners);
     let at_corners = corners.iter().zip(gaps).filter_map(|(corner, gap)| Some((*corner as u32, gap?)));
-    let mut found = Candidates { within: Vec::new(), out_of_reach: Vec::new() };
+    let mut found = Candidates::none();
     let mut scorer =
         bounds.lower().solid().map(|lower| Scorer::new(upper, lower, (prospects.out, prospects.inwards)));
     let mut take = |along: Direction, segment: [DVec3; 2], aim: DVec3, corner: u32, distance: Option<f64>| {

@@ -1,29 +1,26 @@
-use super::super::SpaceKnowledge;
-use super::super::knowledge::Prospects;
+use super::Touching;
 use crate::heading::Heading;
-use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Proposal, Reason, Situation};
-use contact_kinematics::Direction;
 
 /// The side of the width along `along` on which the bounds are further apart: one exact touch each closes it.
-pub(super) fn width_touch(
-    situation: &Situation<'_, SpaceKnowledge>,
-    along: Direction,
-) -> Result<Proposal<SpaceKnowledge>, PlanError> {
-    let room = |d: Direction| {
+pub(super) fn width_touch<K: Touching>(
+    situation: &Situation<'_, K>,
+    along: K::Heading,
+) -> Result<Proposal<K>, PlanError> {
+    let room = |d: K::Heading| {
         let (lower, upper) = situation.known.support(d);
         upper - lower
     };
-    let mut sides = [along, -along];
+    let mut sides = [along, along.opposite()];
     sides.sort_by(|a, b| room(*b).total_cmp(&room(*a)));
-    let Prospects { out, inwards, .. } = situation.known.prospects();
+    let margin = situation.known.margin();
     // Exact: beyond rounding. With noise: what a new touch leaves itself cannot be gained.
     let size = situation.known.mean_width();
-    let gains = |d: &Direction| room(*d) > (1e-12 * size).max(out + inwards);
-    let wanted: Vec<Direction> = sides.into_iter().filter(gains).collect();
+    let gains = |d: &K::Heading| room(*d) > (1e-12 * size).max(margin);
+    let wanted: Vec<K::Heading> = sides.into_iter().filter(gains).collect();
     match wanted.iter().find(|d| situation.limits.allow(**d)) {
         Some(side) => {
-            let expected = Some(room(*side) - out - inwards);
+            let expected = Some(room(*side) - margin);
             Ok(Proposal { along: *side, ray: None, expected, reason: Reason::Width })
         }
         None if wanted.is_empty() => Err(PlanError::NothingToGain),

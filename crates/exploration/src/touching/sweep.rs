@@ -1,41 +1,35 @@
-use super::super::SpaceKnowledge;
-use super::super::opening::{Stage, stage};
-use super::super::sequence::low_discrepancy;
+use super::{Stage, Touching, stage};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use contact_kinematics::Direction;
 
-/// A fixed sequence that is spread evenly at any length: what can be had without looking.
+/// A fixed sequence that is spread evenly at any length: what can be had without looking. In the plane turns by the golden angle.
 #[derive(Clone, Debug)]
-pub struct FixedSweep {
-    start: Vec<Direction>,
+pub struct FixedSweep<H> {
+    start: Vec<H>,
     next: usize,
 }
 
 /// Members of the sequence that are passed over because they are out of reach, at most.
 const PASSED: usize = 1000;
 
-impl FixedSweep {
+impl<H> FixedSweep<H> {
     /// With these first touches.
     #[must_use]
-    pub fn new(start: Vec<Direction>) -> Self {
+    pub fn new(start: Vec<H>) -> Self {
         Self { start, next: 0 }
     }
 }
 
-impl Planner<SpaceKnowledge> for FixedSweep {
+impl<K: Touching> Planner<K> for FixedSweep<K::Heading> {
     fn name(&self) -> &'static str {
         "sweep"
     }
 
-    fn next(
-        &mut self,
-        situation: &Situation<'_, SpaceKnowledge>,
-    ) -> Result<Proposal<SpaceKnowledge>, PlanError> {
+    fn next(&mut self, situation: &Situation<'_, K>) -> Result<Proposal<K>, PlanError> {
         if let Stage::Due(proposal) = stage(&self.start, situation)? {
             return Ok(proposal);
         }
         for _ in 0..PASSED {
-            let along = low_discrepancy(self.next);
+            let along = K::in_sequence(self.next);
             self.next += 1;
             if situation.limits.allow(along) {
                 return Ok(Proposal { along, ray: None, expected: None, reason: Reason::Sequence });

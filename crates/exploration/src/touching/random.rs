@@ -1,45 +1,40 @@
-use super::super::SpaceKnowledge;
-use super::super::opening::{Stage, stage};
+use super::{Stage, Touching, stage};
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
 use crate::random::Source;
-use contact_kinematics::Direction;
 
-/// Directions that are uniform over the sphere: what any planner must beat.
+/// Directions that are uniform over the sphere (circle): what any planner must beat.
 #[derive(Clone, Debug)]
-pub struct RandomTouches {
-    start: Vec<Direction>,
+pub struct RandomTouches<H> {
+    start: Vec<H>,
     source: Source,
 }
 
-/// Draws until one is within reach; limits that leave less than some hundredth of the sphere are met by moving one to the rim.
+/// Draws until one is within reach; limits that leave less than some hundredth of all are met by moving one to the rim.
 const DRAWS: usize = 100;
 
-impl RandomTouches {
+impl<H> RandomTouches<H> {
     /// With these first touches.
     #[must_use]
-    pub fn new(start: Vec<Direction>, seed: u64) -> Self {
+    pub fn new(start: Vec<H>, seed: u64) -> Self {
         Self { start, source: Source::new(seed) }
     }
 }
 
-impl Planner<SpaceKnowledge> for RandomTouches {
+impl<K: Touching> Planner<K> for RandomTouches<K::Heading> {
     fn name(&self) -> &'static str {
         "random"
     }
 
-    fn next(
-        &mut self,
-        situation: &Situation<'_, SpaceKnowledge>,
-    ) -> Result<Proposal<SpaceKnowledge>, PlanError> {
+    fn next(&mut self, situation: &Situation<'_, K>) -> Result<Proposal<K>, PlanError> {
         if let Stage::Due(proposal) = stage(&self.start, situation)? {
             return Ok(proposal);
         }
-        let mut along = self.source.direction();
+        let mut along = K::drawn(&mut self.source);
         for _ in 0..DRAWS {
             if situation.limits.allow(along) {
                 break;
             }
-            along = self.source.direction();
+            along = K::drawn(&mut self.source);
         }
         let along = situation.limits.nearest(along).ok_or(PlanError::NothingToGain)?;
         Ok(Proposal { along, ray: None, expected: None, reason: Reason::Sequence })

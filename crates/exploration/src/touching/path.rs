@@ -1,43 +1,36 @@
-use super::super::SpaceKnowledge;
-use super::super::candidates::{Candidates, Score, candidates};
-use super::super::opening::{Stage, stage};
 use super::width::width_touch;
-use super::{NOTHING, OVERESTIMATE, best, proposal};
+use super::{CandidateOf, CandidatesOf, NOTHING, OVERESTIMATE, Score, Stage, Touching, proposal, stage};
 use crate::goal::Goal;
 use crate::heading::Heading;
-use crate::knowledge::Knowledge;
 use crate::planner::{PlanError, Planner, Proposal, Reason, Situation};
-use contact_kinematics::Direction;
 
-/// Of all touches that pay nearly as much as the best one, takes the nearest: half the way of a greedy planner in space for a few
-/// per cent more touches.
+/// Of all touches that pay nearly as much as the best one, takes the nearest: half the way of a greedy planner in space, and three quarters
+/// in the plane, for a few per cent more touches.
 ///
-/// The score is that of the goal: expected loss of volume for a gap, the distance of the bounds for a Hausdorff distance, and the two
+/// The score is that of the goal: expected loss of volume (area) for a gap, the distance of the bounds for a Hausdorff distance, and the two
 /// directions of a width. This is the planner to start with.
 #[derive(Clone, Debug)]
-pub struct PathAware {
-    start: Vec<Direction>,
-    share: f64,
+pub struct PathAware<H> {
+    start: Vec<H>,
+    /// Where it is not that of the side.
+    share: Option<f64>,
 }
-
-/// Share of the best score that is enough: on 150 bodies 0.56 of the way of a greedy planner for 1.03 of its touches (means).
-const SHARE: f64 = 0.55;
 
 /// Power of the share where distances are scored: what is nearly the largest is most of what there is to touch, and all of it must be
 /// touched in the end. 0.9 of the largest is enough then.
 const OF_DISTANCE: f64 = 0.2;
 
-impl PathAware {
-    /// With these first touches and a share of 0.55.
+impl<H> PathAware<H> {
+    /// With these first touches and a share of 0.55, in the plane 0.5.
     #[must_use]
-    pub fn new(start: Vec<Direction>) -> Self {
-        Self { start, share: SHARE }
+    pub fn new(start: Vec<H>) -> Self {
+        Self { start, share: None }
     }
 
     /// With another share of the best score that is enough, in [0, 1]: 1 is greedy, 0.3 where motion is dear.
     #[must_use]
     pub fn with_share(self, share: f64) -> Self {
-        Self { share: share.clamp(0.0, 1.0), ..self }
+        Self { share: Some(share.clamp(0.0, 1.0)), ..self }
     }
 }
 
@@ -45,40 +38,35 @@ impl PathAware {
 /// to reach it are near enough: one that is spared is worth more than its way.
 const NEARLY: f64 = 1.3;
 
-impl Planner<SpaceKnowledge> for PathAware {
+impl<K: Touching> Planner<K> for PathAware<K::Heading> {
     fn name(&self) -> &'static str {
         "path-aware"
     }
 
-    fn next(
-        &mut self,
-        situation: &Situation<'_, SpaceKnowledge>,
-    ) -> Result<Proposal<SpaceKnowledge>, PlanError> {
-        let (bounds, upper) = match stage(&self.start, situation)? {
+    fn next(&mut self, situation: &Situation<'_, K>) -> Result<Proposal<K>, PlanError> {
+        let closed = match stage(&self.start, situation)? {
             Stage::Due(proposal) => return Ok(proposal),
-            Stage::Closed(bounds, upper) => (bounds, upper),
+            Stage::Closed(closed) => closed,
         };
+        let ([volume, length], share) = (K::sizes(closed), self.share.unwrap_or(K::SHARE));
         let (score, share, least) = match situation.goal {
-            Goal::Gap(_) => (Score::Volume, self.share, NOTHING * upper.volume()),
-            Goal::Hausdorff(_) => {
-                (Score::Distance, self.share.powf(OF_DISTANCE), NOTHING * upper.moments().area.sqrt())
-            }
+            Goal::Gap(_) => (Score::Volume, share, NOTHING * volume),
+            Goal::Hausdorff(_) => (Score::Distance, share.powf(OF_DISTANCE), NOTHING * length),
             Goal::Width { along, .. } => return width_touch(situation, *along),
         };
-        let prospects = situation.known.prospects();
-        let found = candidates(bounds, upper, score, &prospects, situation.limits);
-        let best = best(&found, least)?;
-        let finish = last_step(situation, upper.volume());
+        let found = situation.known.candidates(closed, score, situation.limits);
+        let best = found.best(least)?;
+        let finish = last_step(situation, volume);
         let enough = if finish < NEARLY * best.score { finish.min(best.score) } else { 0.0 };
         let enough = enough.max(share * best.score);
-        let chosen = situation.here.map_or(best, |here| nearest(&found, enough, here, best));
+        let chosen = situation.here.map_or(best, |here| nearest::<K>(&found, enough, here, best));
         let reason = if chosen == best { Reason::Best } else { Reason::Near };
         Ok(proposal(chosen, reason))
     }
 }
 
 /// The score that is expected to reach the goal in one touch; infinite where the score is not in the unit of the goal.
-fn last_step(situation: &Situation<'_, SpaceKnowledge>, upper: f64) -> f64 {
+fn last_step<K: Touching>(situation: &Situation<'_, K>, upper: f64) -> f64 {
     match situation.goal {
         Goal::Gap(goal) => (situation.known.measures().gap() - goal) * upper / OVERESTIMATE,
         _ => f64::INFINITY,
@@ -86,7 +74,12 @@ fn last_step(situation: &Situation<'_, SpaceKnowledge>, upper: f64) -> f64 {
 }
 
 /// The candidate nearest to `here` of those with a score of `enough`.
-fn nearest(found: &Candidates, enough: f64, here: Direction, best: super::Candidate) -> super::Candidate {
+fn nearest<K: Touching>(
+    found: &CandidatesOf<K>,
+    enough: f64,
+    here: K::Heading,
+    best: CandidateOf<K>,
+) -> CandidateOf<K> {
     let good = found.within.iter().filter(|c| c.score >= enough);
     // The first of several that are equally near.
     good.min_by(|a, b| a.along.angle_to(here).total_cmp(&b.along.angle_to(here))).copied().unwrap_or(best)
