@@ -290,6 +290,11 @@ impl Record {
         }
     }
 
+    /// Whether there is any blow.
+    pub(super) fn has_blows(&self) -> bool {
+        self.intervals.iter().any(|interval| interval.blow)
+    }
+
     /// Whether a blow ends or begins at a sample.
     pub(super) fn beside_blow(&self, k: usize) -> bool {
         [k.checked_sub(1), Some(k)]

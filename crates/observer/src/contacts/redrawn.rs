@@ -42,8 +42,7 @@ impl Covariances<CONSTANTS> {
         if linear || problem.planar && !problem.record.frictionless() {
             return self;
         }
-        let many =
-            !problem.record.frictionless() || problem.record.intervals.iter().any(|interval| interval.blow);
+        let many = !problem.record.frictionless() || problem.record.has_blows();
         let draws = if many { draws.min(DRAWS_OF_MANY_NODES) } else { draws };
         let mut random = Normal::seeded(SEED);
         let one = |record: &Record| {

@@ -221,8 +221,8 @@ fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.
 pub(super) fn fine(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
-    let blows = problem.record.intervals.iter().any(|interval| interval.blow);
-    fine_within(problem, start, if blows { MOST_OF_BLOWS } else { MOST_OF_LAST })
+    let most = if problem.record.has_blows() { MOST_OF_BLOWS } else { MOST_OF_LAST };
+    fine_within(problem, start, most)
 }
 
 /// The same in so many linearisations beyond those after which it is asked what of the inertia is learned.
@@ -299,7 +299,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         planar: options.planar,
         shares: false,
         // Noise of nothing is explained, and chains with blows are stiff: steps along a curved valley are short there.
-        patient: !options.noise.limits(&units) || record.intervals.iter().any(|interval| interval.blow),
+        patient: !options.noise.limits(&units) || record.has_blows(),
         missed: Vec::new(),
         blurred: Vec::new(),
     }
