@@ -9,6 +9,7 @@ use super::triangular::{Rows, factor, forward, inverse_factor, product};
 use nalgebra::{SMatrix, SVector};
 
 /// A node of which the equations are solved for its own motion.
+#[derive(Clone, Copy)]
 pub(super) struct Eliminated<const P: usize> {
     /// Lower Cholesky factor of its own equations, with the reciprocals of the diagonal.
     factor: Rows<MOTION, MOTION>,

@@ -121,9 +121,35 @@ impl<const P: usize> Gradient<P> {
     }
 }
 
+/// Memory of equations that are no longer needed, of a whole chain and of its second half. Pages of new memory would be as dear as what is written to them:
+/// those of ten thousand nodes are 75 MB.
+#[derive(Default)]
+pub(super) struct Room<const P: usize> {
+    pub(super) whole: Equations<P>,
+    half: Equations<P>,
+}
+
+impl<const P: usize> Room<P> {
+    /// For a chain of so many nodes, and for its second half.
+    pub(super) fn taken(&mut self, count: usize) -> [&mut Equations<P>; 2] {
+        let Self { whole: Equations { nodes, links, .. }, .. } = self;
+        nodes.reserve(count.saturating_sub(nodes.len()));
+        links.reserve(count.saturating_sub(links.len()));
+        [&mut self.whole, &mut self.half]
+    }
+}
+
+impl<const P: usize> Default for Equations<P> {
+    fn default() -> Self {
+        let (body, body_gradient) = (SMatrix::zeros(), SVector::zeros());
+        Self { nodes: Vec::new(), body, body_gradient, cost: 0.0, conditions: 0, links: Vec::new() }
+    }
+}
+
 impl<const P: usize> Equations<P> {
-    /// Of so many nodes of which nothing is known.
-    pub(super) fn none(count: usize) -> Self {
+
+    /// Of so many nodes of which nothing is known, where these were.
+    pub(super) fn cleared(&mut self, count: usize) {
         let zero = NodeEquations {
             own: Transition::zeros(),
             next: Transition::zeros(),
@@ -132,32 +158,28 @@ impl<const P: usize> Equations<P> {
             cost: 0.0,
             conditions: 0,
         };
-        Self {
-            nodes: vec![zero; count],
-            body: SMatrix::zeros(),
-            body_gradient: SVector::zeros(),
-            cost: 0.0,
-            conditions: 0,
-            links: Vec::with_capacity(count),
-        }
+        let (mut nodes, mut links) = (std::mem::take(&mut self.nodes), std::mem::take(&mut self.links));
+        nodes.clear();
+        nodes.resize(count, zero);
+        links.clear();
+        *self = Self { nodes, links, ..Self::default() };
     }
 
-    /// Together with those of the nodes from the last of these on, of which these tell what the link before it says.
-    pub(super) fn followed_by(mut self, rest: Self) -> Self {
+    /// Takes over those of the nodes from the last of these on, of which these tell what the link before it says.
+    pub(super) fn take_on(&mut self, rest: &mut Self) {
         let before = self.nodes.pop();
         let boundary = self.nodes.len();
-        self.nodes.extend(rest.nodes);
+        self.nodes.append(&mut rest.nodes);
         if let Some((own, before)) = self.nodes.get_mut(boundary).zip(before) {
             own.own += before.own;
             own.body += before.body;
             own.gradient += before.gradient;
         }
-        self.links.extend(rest.links);
+        self.links.append(&mut rest.links);
         self.body += rest.body;
         self.body_gradient += rest.body_gradient;
         self.cost += rest.cost;
         self.conditions += rest.conditions;
-        self
     }
 
     pub(super) fn gradient(&self) -> Gradient<P> {

@@ -1,7 +1,7 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::body::{Body, CONSTANTS};
-use super::equations::{Equations, LinkEquation, Row, Split};
+use super::equations::{Equations, LinkEquation, Room, Row, Split};
 use super::feet::{Foot, Share, Told, at_end};
 use super::first::First;
 use super::flow::{Carried, Transition};
@@ -143,21 +143,35 @@ impl Problem<'_> {
         [&self.record.wrenches[k], &self.record.wrenches[k + 1]]
     }
 
-    /// Of many nodes one half on a thread of its own. None where the unknowns are beyond all numbers.
+    /// None where the unknowns are beyond all numbers.
     pub(super) fn linearise<const P: usize>(&self, at: &Unknowns) -> Option<Equations<P>> {
+        self.linearise_in(at, &mut Room::default())
+    }
+
+    /// The same in memory that is there; of many nodes one half on a thread of its own.
+    pub(super) fn linearise_in<const P: usize>(
+        &self,
+        at: &Unknowns,
+        room: &mut Room<P>,
+    ) -> Option<Equations<P>> {
         if is_stopped() {
             return None;
         }
         let count = self.nodes.len();
-        let mut all = if count < SHARED {
-            self.linearised(at, 0..count)?
+        let [whole, half] = room.taken(count);
+        if count < SHARED {
+            self.linearise_some(at, 0..count, whole)?;
         } else {
-            let half = count / 2;
-            let (first, second) =
-                at_once(|| self.linearised(at, 0..half), || self.linearised(at, half..count));
-            first?.followed_by(second?)
-        };
-        self.add_prior(at, &mut all);
+            let middle = count / 2;
+            let (first, second) = at_once(
+                || self.linearise_some(at, 0..middle, whole),
+                || self.linearise_some(at, middle..count, half),
+            );
+            first.and(second)?;
+            whole.take_on(half);
+        }
+        self.add_prior(at, whole);
+        let all = std::mem::take(whole);
         all.cost.is_finite().then_some(all)
     }
 
@@ -167,8 +181,20 @@ impl Problem<'_> {
         at: &Unknowns,
         some: Range<usize>,
     ) -> Option<Equations<P>> {
+        let mut all = Equations::default();
+        self.linearise_some(at, some, &mut all)?;
+        Some(all)
+    }
+
+    /// The same in place of what was in `all`.
+    fn linearise_some<const P: usize>(
+        &self,
+        at: &Unknowns,
+        some: Range<usize>,
+        all: &mut Equations<P>,
+    ) -> Option<()> {
         let count = (some.end + 1).min(self.nodes.len()) - some.start;
-        let mut all = Equations::none(count);
+        all.cleared(count);
         for (i, j) in some.enumerate() {
             let mut carried = Carried::<P>::new(at.motions[j], &at.body);
             let from = self.nodes[j];
@@ -188,13 +214,13 @@ impl Problem<'_> {
             }
             let mut feet = Vec::new();
             if end == from + 1 {
-                self.add_split((i, j), &carried, at, &mut all, &mut feet);
+                self.add_split((i, j), &carried, at, all, &mut feet);
             }
             if end > from {
                 all.add_link(i, self.linked(&noise, &carried, at, j, feet)?);
             }
         }
-        Some(all)
+        Some(())
     }
 
     /// The unknowns after a step, and their cost. None beyond all numbers.

@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt steps on a chain of nodes and the constants that all of them share.
 
 use super::elimination::Eliminated;
-use super::equations::{Equations, Gradient};
+use super::equations::{Equations, Gradient, Room};
 use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
@@ -117,24 +117,43 @@ impl<const P: usize> Reduced<P> {
 }
 
 impl<const P: usize> Equations<P> {
-    /// None where the equations are not positive definite.
-    fn reduced(&self, damping: &Tangent, body_damping: f64) -> Option<Reduced<P>> {
-        let mut nodes: Vec<Eliminated<P>> = Vec::with_capacity(self.nodes.len());
+    /// Eliminates the nodes, first to last, each of which is given to `each`. Gives the covariance of the constants; none where the equations are not
+    /// positive definite.
+    fn eliminated(
+        &self,
+        damping: &Tangent,
+        body_damping: f64,
+        mut each: impl FnMut(&Eliminated<P>),
+    ) -> Option<SMatrix<f64, P, P>> {
+        let mut before: Option<Eliminated<P>> = None;
         let mut body = self.body + SMatrix::identity() * body_damping;
         for node in &self.nodes {
             let (mut own, mut to_body) = (node.own, node.body);
             for i in 0..MOTION {
                 own[(i, i)] += damping[i];
             }
-            if let Some(before) = nodes.last() {
+            if let Some(before) = &before {
                 before.lessen(&mut own, &mut to_body, &mut body);
             }
-            nodes.push(Eliminated::new(&own, &node.next, &to_body)?);
+            each(before.insert(Eliminated::new(&own, &node.next, &to_body)?));
         }
-        if let Some(last) = nodes.last() {
+        if let Some(last) = &before {
             last.lessen(&mut Transition::zeros(), &mut SMatrix::zeros(), &mut body);
         }
-        Some(Reduced { nodes, body: inverse(&factor(&body)?) })
+        Some(inverse(&factor(&body)?))
+    }
+
+    /// The same with the nodes, in memory that is there.
+    fn reduced_in(
+        &self,
+        damping: &Tangent,
+        body_damping: f64,
+        mut nodes: Vec<Eliminated<P>>,
+    ) -> Option<Reduced<P>> {
+        nodes.clear();
+        nodes.reserve(self.nodes.len());
+        let body = self.eliminated(damping, body_damping, |node| nodes.push(*node))?;
+        Some(Reduced { nodes, body })
     }
 
     /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as
@@ -161,8 +180,17 @@ impl<const P: usize> Equations<P> {
 
     /// Fall of the cost that an undamped step promises.
     fn left(&self) -> f64 {
-        let whole = self.reduced(&Tangent::zeros(), 0.0).map(|reduced| reduced.step(&self.gradient()));
-        whole.map_or(f64::INFINITY, |step| self.promised(&step))
+        let (mut nodes, mut of_body, mut carried) = (self.nodes.iter(), self.body_gradient, Tangent::zeros());
+        let mut promised = 0.0;
+        let body = self.eliminated(&Tangent::zeros(), 0.0, |node| {
+            let Some(own) = nodes.next() else { return };
+            let (mut own, mut next) = (own.gradient + carried, Tangent::zeros());
+            node.down(&mut own, &mut next, &mut of_body);
+            // The gradient's square by the inverse of the equations, as far as it comes from this node.
+            promised += own.norm_squared();
+            carried = next;
+        });
+        body.map_or(f64::INFINITY, |body| promised + (body * of_body).dot(&of_body))
     }
 
     /// The equations with all nodes eliminated, and the share of information that was added to them. `unit` is the information of a node whose deviations are the natural units.
@@ -170,7 +198,7 @@ impl<const P: usize> Equations<P> {
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
     /// natural unit over the root of that share of all nodes. None where a hundred of it are not enough.
     pub(super) fn solver(&self, unit: &Tangent) -> Option<(Reduced<P>, f64)> {
-        let with = |share: f64| Some((self.reduced(&(unit * share), 0.0)?, share));
+        let with = |share: f64| Some((self.reduced_in(&(unit * share), 0.0, Vec::new())?, share));
         [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)
     }
 
@@ -236,7 +264,8 @@ pub(super) fn solve<const P: usize>(
     enough: f64,
 ) -> Option<Solved<P>> {
     let mut unknowns = start;
-    let mut equations = problem.linearise::<P>(&unknowns)?;
+    let (mut room, mut spare) = (Room::<P>::default(), Vec::new());
+    let mut equations = problem.linearise_in(&unknowns, &mut room)?;
     let unit = problem.natural_information();
     let mean =
         problem.condition_information() * equations.conditions as f64 / (problem.nodes.len() * MOTION) as f64;
@@ -253,11 +282,13 @@ pub(super) fn solve<const P: usize>(
             }
             checked = (iterations, equations.cost);
         }
-        let reduced = equations.reduced(&(unit * (damping * mean)), damping * mean);
+        let reduced =
+            equations.reduced_in(&(unit * (damping * mean)), damping * mean, std::mem::take(&mut spare));
         let step = reduced.as_ref().map(|reduced| reduced.step(&equations.gradient()));
         let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
-        let trial =
-            reduced.zip(step.as_ref()).and_then(|(r, step)| tried(problem, &unknowns, &equations, &r, step));
+        let both = reduced.as_ref().zip(step.as_ref());
+        let trial = both.and_then(|(reduced, step)| tried(problem, &unknowns, &equations, reduced, step));
+        spare = reduced.map(|reduced| reduced.nodes).unwrap_or_default();
         let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
         // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
         let little = promised < enough * equations.scale() || short;
@@ -269,8 +300,9 @@ pub(super) fn solve<const P: usize>(
             Some(trial) => {
                 damping = lowered(damping, (equations.cost - trial.cost) / promised);
                 raise = RAISE;
-                let Some(next) = problem.linearise(&trial.unknowns) else { break };
-                (unknowns, equations) = (trial.unknowns, next);
+                unknowns = trial.unknowns;
+                room.whole = equations;
+                equations = problem.linearise_in(&unknowns, &mut room)?;
                 iterations += 1;
             }
             None => {

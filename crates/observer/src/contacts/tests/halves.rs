@@ -18,7 +18,8 @@ fn equations_of_two_halves_are_those_of_the_whole() {
         let some = |range| problem.linearised::<CONSTANTS>(&at, range).unwrap();
         let whole = some(0..count);
         for half in [1, count / 2, count - 1] {
-            let joined = some(0..half).followed_by(some(half..count));
+            let mut joined = some(0..half);
+            joined.take_on(&mut some(half..count));
             let told = |of: &Equations<CONSTANTS>| (of.nodes.len(), of.links.len(), of.conditions);
             assert_eq!(told(&joined), told(&whole));
             assert!((joined.cost - whole.cost).abs() < 1e-12 * whole.cost);

@@ -121,7 +121,8 @@ fn told(
     motion: &Motion,
     body: &Body,
 ) -> Equations<CONSTANTS> {
-    let mut all = Equations::<CONSTANTS>::none(1);
+    let mut all = Equations::<CONSTANTS>::default();
+    all.cleared(1);
     first.add(motion, body, problem.record.origin, &mut all);
     let slope: SMatrix<f64, CONSTANTS, CONSTANTS> = body.slope_from(&of);
     all.body_gradient += slope.transpose() * information * body.from(&of);
