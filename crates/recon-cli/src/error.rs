@@ -231,6 +231,12 @@ pub(crate) enum CliError {
     Finger(#[source] recon::exploration::contour::StuckFinger),
     #[error("the outline cannot be followed")]
     Traced(#[from] recon::exploration::contour::TraceError<recon::exploration::contour::StuckFinger>),
+    #[error("the finger cannot come down on the surface")]
+    DescendingFinger(#[source] recon::exploration::relief::StuckFinger),
+    #[error("the surface cannot be felt")]
+    Probed(#[from] recon::exploration::relief::ProbingError<recon::exploration::relief::StuckFinger>),
+    #[error("the surface cannot be bounded")]
+    ReliefBounds(#[source] recon::exploration::relief::ReliefBoundsError),
     #[error(
         "no finger: give its radius in m by --finger, or as `finger.radius` in {}", path.display()
     )]
@@ -265,7 +271,7 @@ pub(crate) enum CliError {
         "{} says no goal: give one by --until, as gap=0.1, or a folder of `recon explore`", path.display()
     )]
     NoGoal { path: PathBuf },
-    #[error("{} is of a contour, which is followed in one go: there is no next touch", path.display())]
+    #[error("{} is of a contour or a relief, which is felt in one go: there is no next touch", path.display())]
     Followed { path: PathBuf },
     #[error("{} cannot be read as the summary of an exploration: {what}", path.display())]
     NotExplored { path: PathBuf, what: String },
@@ -352,6 +358,9 @@ impl CliError {
             | Self::Sensed(_)
             | Self::Finger(_)
             | Self::Traced(_)
+            | Self::DescendingFinger(_)
+            | Self::Probed(_)
+            | Self::ReliefBounds(_)
             | Self::NoFinger { .. }
             | Self::RolledWithoutGravity
             | Self::HalfNoise

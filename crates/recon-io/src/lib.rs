@@ -88,7 +88,7 @@ pub use report::{
 };
 pub use scene::{
     AnyOutline, BoxedShape, KnownInertia, KnownPalm, OutlineScene, PlanarBody, PlanarKnown, PlanarScene,
-    Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation,
+    Scene, SceneError, SceneErrorKind, Sensors, Shape, Simulation, SurfaceScene,
 };
 pub use stream::{StreamRow, write_stream_header, write_stream_row};
 pub use summary::{

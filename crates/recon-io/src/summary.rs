@@ -32,6 +32,8 @@ pub enum SummaryOf {
     Strokes,
     /// An outline that a finger followed.
     Contour,
+    /// A body that a finger came down on.
+    Relief,
     /// A simulated scene.
     Simulation,
     /// An object or a scene for simulators.
@@ -56,6 +58,7 @@ impl SummaryOf {
             Self::Rolling => "rolling/1",
             Self::Strokes => "strokes/1",
             Self::Contour => "contour/1",
+            Self::Relief => "relief/1",
             Self::Simulation => "simulation/1",
             Self::Export => "export/1",
             Self::Start => "start/1",

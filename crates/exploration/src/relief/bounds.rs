@@ -183,8 +183,10 @@ impl ReliefBounds {
         let low = self.points.iter().map(|x| x.dot(u)).fold(f64::NEG_INFINITY, f64::max) - self.margin;
         let far =
             |cell: &Cell| cell.half.mul_add(u.abs().element_sum(), cell.middle.dot(u)).min(self.swept.reach);
-        let mut open: BinaryHeap<Ranked> =
-            self.cells.iter().map(|cell| Ranked { far: far(cell), cell: cell.clone() }).collect();
+        // The body has a place that is no nearer than `low`: what is nearer is not looked at.
+        let ranked = |cell: &Cell| Some(far(cell)).filter(|far| *far >= low);
+        let ranked = |cell: &Cell| Some(Ranked { far: ranked(cell)?, cell: cell.clone() });
+        let mut open: BinaryHeap<Ranked> = self.cells.iter().filter_map(ranked).collect();
         let mut halved = 0;
         // The farthest first: what is told is true whenever the looking ends.
         while let Some(Ranked { far: top, cell }) = open.pop() {

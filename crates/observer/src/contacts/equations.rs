@@ -147,7 +147,6 @@ impl<const P: usize> Default for Equations<P> {
 }
 
 impl<const P: usize> Equations<P> {
-
     /// Of so many nodes of which nothing is known, where these were.
     pub(super) fn cleared(&mut self, count: usize) {
         let zero = NodeEquations {

@@ -62,6 +62,7 @@ pub(crate) struct GoalArgs {
 }
 
 #[derive(Args, Debug)]
+#[command(group = clap::ArgGroup::new("felt").args(["contour", "relief"]))]
 #[command(after_long_help = "\
 The object is that of the scene's [simulation], in space or in the plane. A planner that sees contacts alone says where it is
 touched; the lower bound is the hull of the contacts, the upper one the intersection of their half-spaces, and the gap what is
@@ -83,6 +84,10 @@ With --contour a round finger keeps in touch with the outline of the scene (`[ou
 plane), once round. Where it does not get in it jumps, and that is told: between the two contacts nothing was felt. The hull of the outline is bounded, with
 --contact-noise and --normal-noise at the confidence, whatever the finger does not get into. It writes contour.csv, jumps.csv and the bounds.
 
+With --relief a round finger comes down on the body of the scene (`[surface]`, a ball with waves) on a lattice of lines from 16 directions, more densely where the
+normal turns. Where it does not get in it jumps, and what no direction sees ends in a rim: both are told. The body's volume is bounded from above and its hull from
+both sides, whatever it is. It writes relief.csv, misses.csv, jumps.csv and the bounds.
+
 The output folder appears as a whole or not at all: contacts.csv, the bounds, summary.json (goal, proof, each touch and why), and
 report.html. `recon next` goes on from there.
 
@@ -94,23 +99,28 @@ Examples:
   recon explore plane.toml --rolling --until gap=0.1 --contact-noise 5e-5 --force-noise 2e-3 -o out
   recon explore scene.toml --rolling --friction 0.9 --until gap=0.3 -o out
   recon explore outline.toml --contour --finger 0.01 -o out
+  recon explore body.toml --relief --finger 0.01 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
 pub(crate) struct ExploreArgs {
     /// Scene file (TOML)
     pub(crate) scene: PathBuf,
     /// What is to be proven: gap=SHARE, hausdorff=M or width=M@X,Y,Z
-    #[arg(long, value_name = "GOAL", value_parser = until, required_unless_present = "contour")]
+    #[arg(long, value_name = "GOAL", value_parser = until, required_unless_present_any = ["contour", "relief"])]
     pub(crate) until: Option<Until>,
     #[command(flatten)]
     pub(crate) goal: GoalArgs,
     /// Follow an outline once round with a round finger; it need not be convex
     #[arg(long, conflicts_with_all = ["until", "planner", "rays", "rolling"])]
     pub(crate) contour: bool,
-    /// With --contour: radius of the finger, m [default: finger.radius of the scene]
-    #[arg(long, value_name = "M", requires = "contour", value_parser = positive)]
+    /// Come down on a body in space with a round finger; it need not be convex
+    #[arg(long, conflicts_with_all = ["until", "planner", "rays", "rolling", "contour"])]
+    pub(crate) relief: bool,
+    /// With --contour or --relief: radius of the finger, m [default: finger.radius of the scene]
+    #[arg(long, value_name = "M", requires = "felt", value_parser = positive)]
     pub(crate) finger: Option<f64>,
-    /// With --contour: motion of the finger's centre from touch to touch at most, m [default: a fiftieth of the size, less for small fingers]
-    #[arg(long, value_name = "M", requires = "contour", value_parser = positive)]
+    /// With --contour: motion of the finger's centre from touch to touch at most, m [default: a fiftieth of the size, less for small fingers]; with --relief
+    /// what lines are apart [default: 0.06 of the size, less for small fingers]
+    #[arg(long, value_name = "M", requires = "felt", value_parser = positive)]
     pub(crate) step: Option<f64>,
     /// Touch along rays rather than with a plane (line)
     #[arg(long)]

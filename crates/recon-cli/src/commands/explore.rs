@@ -3,8 +3,8 @@ use crate::cli::{ExploreArgs, PlannerAs, Until};
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{
-    CONFIDENCE, Explored, Following, InPlane, InSpace, Settings, explored, followed, goal_of, rolled, sensed,
-    stroked, write_files_folder,
+    CONFIDENCE, Descending, Explored, Following, InPlane, InSpace, Settings, explored, felt, followed,
+    goal_of, rolled, sensed, stroked, write_files_folder,
 };
 use crate::progress::Progress;
 use glam::{DVec2, DVec3};
@@ -15,7 +15,7 @@ use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, Simu
 use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::object_dynamics::planar::PlanarObject;
 use recon::shape_bounds::exact_hull::planar as flat;
-use recon_io::{FolderTarget, OutlineScene, PlanarBody, PlanarScene, Scene, SceneErrorKind};
+use recon_io::{FolderTarget, OutlineScene, PlanarBody, PlanarScene, Scene, SceneErrorKind, SurfaceScene};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::slice;
@@ -31,6 +31,7 @@ pub(crate) fn run(args: &ExploreArgs, console: &Console) -> Result<Outcome, CliE
     progress.step("reading the scene");
     let made = match Scene::read(&args.scene) {
         _ if args.contour => contour(args, &progress)?,
+        _ if args.relief => relief(args, &progress)?,
         Ok(scene) if args.rolling => between(args, &scene, &progress)?,
         Ok(scene) => in_space(args, &scene, &progress)?,
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
@@ -67,11 +68,23 @@ fn until(args: &ExploreArgs) -> Result<&Until, CliError> {
 
 fn contour(args: &ExploreArgs, progress: &Progress) -> Result<Explored, CliError> {
     let scene = OutlineScene::read(&args.scene)?;
-    let radius = args.finger.or(scene.finger);
-    let radius = radius.ok_or_else(|| CliError::NoFinger { path: args.scene.clone() })?;
+    let radius = finger(args, scene.finger)?;
     let following = Following::new(&args.goal, args.step, [scene.outline.size(), radius])?;
     progress.step("following the outline");
     followed(&title(args), scene.outline, radius, &following)
+}
+
+/// Radius of the round finger, m, where the scene may state one.
+fn finger(args: &ExploreArgs, stated: Option<f64>) -> Result<f64, CliError> {
+    args.finger.or(stated).ok_or_else(|| CliError::NoFinger { path: args.scene.clone() })
+}
+
+fn relief(args: &ExploreArgs, progress: &Progress) -> Result<Explored, CliError> {
+    let scene = SurfaceScene::read(&args.scene)?;
+    let radius = finger(args, scene.finger)?;
+    let descending = Descending::new(&args.goal, args.step, &scene, radius)?;
+    progress.step("coming down on the body");
+    felt(&title(args), scene.surface, radius, &descending, |words| progress.say(words))
 }
 
 fn in_space(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Explored, CliError> {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
     let (contacts, earlier) = inputs(&args.input)?;
-    if earlier["schema"] == SummaryOf::Contour.schema() {
+    if [SummaryOf::Contour, SummaryOf::Relief].iter().any(|of| earlier["schema"] == of.schema()) {
         return Err(CliError::Followed { path: args.input.clone() });
     }
     let (told, exit) = planned(args, &contacts, &earlier, &read_touches(&contacts)?)?;

@@ -50,8 +50,8 @@ pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
 pub(crate) use estimate::{Asked, Estimated, estimated, estimated_planes};
 pub(crate) use exploration::{
-    CONFIDENCE, Explored, Following, InPlane, InSpace, Placed, STATE, Settings, State, explored, followed,
-    goal_of, next_motion, next_stroke, next_touch, rolled, sensed, stroked, until_of,
+    CONFIDENCE, Descending, Explored, Following, InPlane, InSpace, Placed, STATE, Settings, State, explored,
+    felt, followed, goal_of, next_motion, next_stroke, next_touch, rolled, sensed, stroked, until_of,
 };
 pub(crate) use features::feature_lines;
 pub(crate) use fitted::{fit_words, fitted_shape};

@@ -29,6 +29,7 @@ mod not_smooth;
 mod nothing_lost;
 mod planar;
 mod pushes;
+mod relief;
 mod schema;
 mod simulate_any;
 mod simulate_planar;

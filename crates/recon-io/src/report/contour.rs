@@ -1,4 +1,4 @@
-//! The page of an outline that a finger followed: what was felt, what was jumped over, what is proven of the hull.
+//! The page of what a round finger felt, along an outline or on a body in space: what was felt, what was jumped over, what is proven of the hull.
 
 use super::Verdict;
 use super::notices::notices;
@@ -13,7 +13,7 @@ pub struct JumpRow {
     /// The touch before it, from 1.
     pub after: usize,
     /// Both contacts, m.
-    pub ends: [[f64; 2]; 2],
+    pub ends: [Vec<f64>; 2],
     /// How far they are apart, m.
     pub mouth: f64,
     /// Radius of curvature of the hollow at most, if it was felt after all, m.
@@ -23,6 +23,8 @@ pub struct JumpRow {
 /// What the page shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContourPage {
+    /// What kind of result it is.
+    pub kicker: &'static str,
     /// Title.
     pub title: String,
     /// What was felt, in a sentence.
@@ -31,42 +33,43 @@ pub struct ContourPage {
     pub facts: Vec<Fact>,
     /// Pictures, two in a row.
     pub panels: Vec<FigurePanel>,
+    /// What stands above them.
+    pub pictured: &'static str,
     /// What the pictures show.
     pub caption: String,
     /// Jumps in order.
     pub jumps: Vec<JumpRow>,
+    /// What is to be known of them.
+    pub about_jumps: &'static str,
 }
 
 const HEADS: [&str; 6] = ["Jump", "After touch", "From, m", "To, m", "Apart, m", "Radius at most, m"];
-const ABOUT: &str = "What lies between the two contacts of a jump was not felt: the finger touches both sides at once. Or it was, and is a hollow \
-                     whose mean radius of curvature is no more than the last column says. Nothing else is known of it but that the finger's own disc is free.";
 
 /// Writes it as one HTML page that needs nothing else.
 ///
 /// # Errors
 /// Those of `to`.
 pub fn write_contour_report(page: &ContourPage, to: impl Write) -> io::Result<()> {
-    let mut body = curves_section("Once round", &page.panels, &page.caption);
+    let mut body = curves_section(page.pictured, &page.panels, &page.caption);
     if !page.jumps.is_empty() {
         let heads: String = HEADS.iter().map(|head| format!("<th>{}</th>", escape_text(head))).collect();
         let rows: String = page.jumps.iter().enumerate().map(row).collect();
         let table = format!(
             "<div class=\"scroll\"><table class=\"touches\">\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n"
         );
-        body += &section("Where it jumped", &table, ABOUT);
+        body += &section("Where it jumped", &table, page.about_jumps);
     }
     let verdict = notices(&page.verdict, ["No jump", "Not all felt", "Refused"], &[]);
-    let kicker = "An outline followed by a round finger: what it felt, and what that proves of the hull";
-    Page { kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
+    Page { kicker: page.kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }
 
 fn row((k, jump): (usize, &JumpRow)) -> String {
-    let place = |[x, y]: [f64; 2]| format!("{}, {}", brief_to(3, x), brief_to(3, y));
+    let place = |at: &Vec<f64>| at.iter().map(|x| brief_to(3, *x)).collect::<Vec<_>>().join(", ");
     let cells = [
         (k + 1).to_string(),
         jump.after.to_string(),
-        place(jump.ends[0]),
-        place(jump.ends[1]),
+        place(&jump.ends[0]),
+        place(&jump.ends[1]),
         brief_to(3, jump.mouth),
         brief_to(4, jump.radius_at_most),
     ];
@@ -81,14 +84,18 @@ mod tests {
 
     #[test]
     fn the_page_holds_every_jump_and_loads_nothing() {
-        let jump = JumpRow { after: 7, ends: [[0.0, 0.5], [0.25, 0.5]], mouth: 0.25, radius_at_most: 0.125 };
+        let jump =
+            JumpRow { after: 7, ends: [vec![0.0, 0.5], vec![0.25, 0.5]], mouth: 0.25, radius_at_most: 0.125 };
         let page = ContourPage {
+            kicker: "Felt",
             title: "A <bean>".to_owned(),
             verdict: Verdict { level: Level::Caution, text: "2 < 3".to_owned() },
             facts: vec![("Jumps", "1".to_owned(), "")],
             panels: vec![FigurePanel::default()],
+            pictured: "Once round",
             caption: "c".to_owned(),
             jumps: vec![jump],
+            about_jumps: "not felt",
         };
         let written = |page: &ContourPage| {
             let mut out = Vec::new();

@@ -8,6 +8,7 @@ mod palms;
 mod planar;
 mod possible;
 mod shape;
+mod surface;
 
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ pub use error::{SceneError, SceneErrorKind};
 pub use outline::{AnyOutline, OutlineScene};
 pub use palms::{BoxedShape, KnownPalm};
 pub use planar::{PlanarBody, PlanarKnown, PlanarScene};
+pub use surface::SurfaceScene;
 
 use glam::{DMat3, DQuat, DVec3};
 use recon::contact_kinematics::{CurvatureRadii, Palm};

@@ -78,8 +78,15 @@ struct OutlineFile {
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FingerTable {
+pub(super) struct FingerTable {
     radius: Option<f64>,
+}
+
+impl FingerTable {
+    /// In m, where it is stated.
+    pub(super) fn radius(&self) -> Result<Option<f64>, SceneErrorKind> {
+        self.radius.map(|radius| SceneErrorKind::positive("finger.radius", radius)).transpose()
+    }
 }
 
 #[derive(Deserialize)]
@@ -150,8 +157,7 @@ impl OutlineScene {
                 });
             }
         };
-        let radius = finger.radius.map(|r| SceneErrorKind::positive("finger.radius", r)).transpose()?;
-        Ok(Self { outline, finger: radius })
+        Ok(Self { outline, finger: finger.radius()? })
     }
 }
 

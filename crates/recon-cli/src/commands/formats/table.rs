@@ -40,7 +40,7 @@ const MODE_ODDS: Column = may(
     "how probable it is that palm i slides and that it sticks; off is what is left to 1",
 );
 
-pub(super) const FORMATS: [Format; 21] = [
+pub(super) const FORMATS: [Format; 23] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -347,6 +347,28 @@ pub(super) const FORMATS: [Format; 21] = [
                 "outline.waves",
                 "m, 1, -",
                 "or r = size (1 + depth cos(count angle)): { size, depth, count }",
+            ),
+        ],
+    },
+    Format {
+        name: "relief",
+        about: "relief.csv of recon explore --relief: touches of a round finger that comes down on lines; jumps.csv has both contacts of each jump as x1 .. z2, misses.csv the lines that met nothing",
+        columns: &[
+            needed("x, y, z", "m", "point of the surface; of a miss the line's point nearest to the origin"),
+            needed("nx, ny, nz", "1", "outward unit normal there"),
+            needed("ax, ay, az", "1", "where the finger came from"),
+        ],
+    },
+    Format {
+        name: "surface",
+        about: "scene of a surface (TOML) for recon explore --relief",
+        columns: &[
+            may("finger.radius", "m", "radius of the round finger; else --finger"),
+            needed("surface.size", "m", "mean distance of the surface from its centre"),
+            may(
+                "surface.waves",
+                "1, 1, -",
+                "by which it is farther: a list of { axis, depth, count }, size times the sum of depth cos(count angle), the angle from the axis",
             ),
         ],
     },

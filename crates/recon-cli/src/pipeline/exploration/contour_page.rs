@@ -13,6 +13,10 @@ const CAPTION: &str = "Felt: the outline between touches, broken where the finge
                        negative in hollows; dots: jumps, where nothing was felt, or a hollow more curved than that; the line: a hollow as round as the finger, which gets into nothing more curved. \
                        Room: what the support functions of the bounds of the hull differ by.";
 
+const KICKER: &str = "An outline followed by a round finger: what it felt, and what that proves of the hull";
+const ABOUT_JUMPS: &str = "What lies between the two contacts of a jump was not felt: the finger touches both sides at once. Or it was, and is a hollow \
+                           whose mean radius of curvature is no more than the last column says. Nothing else is known of it but that the finger's own disc is free.";
+
 /// Pictures of the finger on its way.
 const PICTURES: usize = 40;
 /// Points of the finger's circle.
@@ -27,7 +31,7 @@ pub(super) fn page(
     let level = if exit == Exit::Done { Level::Good } else { Level::Caution };
     let jump = |b: &recon::exploration::contour::Bridge| JumpRow {
         after: b.after + 1,
-        ends: known.ends(b),
+        ends: known.ends(b).map(|end| end.to_vec()),
         mouth: b.mouth,
         radius_at_most: b.radius_at_most,
     };
@@ -37,12 +41,15 @@ pub(super) fn page(
     let mut panels = in_turn(vec![picture(known, count - 1)], on_the_way, "picture");
     panels.extend([areas(known), curvature(known), room(known)].into_iter().filter(|p| !p.curves.is_empty()));
     ContourPage {
+        kicker: KICKER,
         title: title.to_owned(),
         verdict: Verdict { level, text: statement.to_owned() },
         facts: facts(known, following),
         panels,
+        pictured: "Once round",
         caption: CAPTION.to_owned(),
         jumps: known.traced.bridges.iter().map(jump).collect(),
+        about_jumps: ABOUT_JUMPS,
     }
 }
 
