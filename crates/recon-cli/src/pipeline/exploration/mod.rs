@@ -2,12 +2,14 @@
 
 mod contour;
 mod contour_page;
+mod groups;
 mod motions;
 mod page;
 mod parallel;
 mod parallel_state;
 mod plane;
 mod relief;
+mod relief_files;
 mod relief_page;
 mod rolling;
 mod sensed;

@@ -1,5 +1,7 @@
 //! Bodies in space that a round finger comes down on.
 
+use super::groups::groups;
+use super::relief_files::files;
 use super::relief_page::page;
 use super::settings::CONFIDENCE;
 use super::side::Drawn;
@@ -7,8 +9,6 @@ use super::story::Explored;
 use crate::cli::GoalArgs;
 use crate::error::{CliError, Outcome as Exit};
 use crate::pipeline::bounds::{LOWER, UPPER, own};
-use crate::pipeline::folder::Extra;
-use glam::{DVec3, IVec3};
 use recon::contact_kinematics::{Direction, at_once};
 use recon::exploration::Heading;
 use recon::exploration::contour::Margins;
@@ -19,8 +19,6 @@ use recon::exploration::relief::{
 use recon::shape_bounds::exact_hull::{HalfSpace, Intersection, Polyhedron, SolidHull};
 use recon_io::{SummaryOf, SurfaceScene, brief_to, write_contour_report};
 use serde_json::{Value, json};
-use std::collections::HashMap;
-use std::fmt::Write;
 
 /// How a finger comes down on a body.
 pub(crate) struct Descending {
@@ -132,13 +130,13 @@ impl Known {
         let points = |k: &usize| relief.touches[*k].point;
         let near = spacing.max(relief.radius);
         let of_jumps =
-            clusters(&relief.bridges.iter().map(|b| b.touches.map(|k| points(&k))).collect::<Vec<_>>(), near);
+            groups(&relief.bridges.iter().map(|b| b.touches.map(|k| points(&k))).collect::<Vec<_>>(), near);
         let widest = |of: &Vec<usize>| {
             let widest = of.iter().map(|k| relief.bridges[*k]).max_by(|a, b| a.mouth.total_cmp(&b.mouth));
             widest.map(|widest| (widest, of.len()))
         };
         let places = of_jumps.iter().filter_map(widest).collect();
-        let rims = clusters(&relief.rims.iter().map(|k| [points(k); 2]).collect::<Vec<_>>(), near).len();
+        let rims = groups(&relief.rims.iter().map(|k| [points(k); 2]).collect::<Vec<_>>(), near).len();
         let mut known =
             Self { relief, places, rims, volume: None, lower: None, upper: None, gap: f64::INFINITY };
         if known.relief.touches.is_empty() {
@@ -163,38 +161,6 @@ fn half_space((normal, (_, high)): &(Direction, (f64, f64))) -> HalfSpace {
     HalfSpace { point: normal.get() * *high, normal: *normal, margin: 0.0 }
 }
 
-/// Pairs of points in groups: those of which some are nearer to each other than `near`, m.
-fn clusters(pairs: &[[DVec3; 2]], near: f64) -> Vec<Vec<usize>> {
-    let cell = |p: DVec3| (p / near).floor().as_ivec3();
-    let mut cells = HashMap::<IVec3, Vec<usize>>::new();
-    for (k, pair) in pairs.iter().enumerate() {
-        pair.iter().for_each(|p| cells.entry(cell(*p)).or_default().push(k));
-    }
-    let (mut groups, mut taken) = (Vec::new(), vec![false; pairs.len()]);
-    for first in 0..pairs.len() {
-        if std::mem::replace(&mut taken[first], true) {
-            continue;
-        }
-        let mut group = vec![first];
-        let mut at = 0;
-        while at < group.len() {
-            for p in pairs[group[at]] {
-                let around = (0..27).map(|d| cell(p) + IVec3::new(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1));
-                let beside: Vec<usize> = around.filter_map(|c| cells.get(&c)).flatten().copied().collect();
-                for k in beside {
-                    if !taken[k] && pairs[k].iter().any(|q| q.distance(p) < near) {
-                        taken[k] = true;
-                        group.push(k);
-                    }
-                }
-            }
-            at += 1;
-        }
-        groups.push(group);
-    }
-    groups
-}
-
 /// Comes down on a body from several directions with a finger of `radius` m.
 pub(crate) fn felt(
     title: &str,
@@ -214,7 +180,7 @@ pub(crate) fn felt(
     let (statement, exit) = statement(&known, descending);
     let figures = figures(title, &known, descending, (&statement, exit));
     let drawn = drawn(&known)?;
-    let mut files = vec![touches_file(&known.relief), misses_file(&known.relief), jumps_file(&known.relief)];
+    let mut files = files(&known.relief);
     files.extend(drawn.files()?);
     let mut report = Vec::new();
     write_contour_report(&page(title, &known, descending, (&statement, exit)), &mut report)
@@ -329,41 +295,4 @@ fn drawn(known: &Known) -> Result<Drawn, CliError> {
     let upper = known.upper.as_ref().map(|hull| Ok((UPPER, own(hull.mesh())?)));
     let surfaces = lower.into_iter().chain(upper).collect::<Result<_, _>>()?;
     Ok(Drawn { surfaces, ..Drawn::default() })
-}
-
-fn touches_file(relief: &Relief) -> Extra {
-    let mut text = String::from("x,y,z,nx,ny,nz,ax,ay,az\n");
-    for touch in &relief.touches {
-        let (p, n, a) = (touch.point, touch.normal.get(), touch.line.along.get());
-        let _ = writeln!(
-            text,
-            "{:?},{:?},{:?},{:?},{:?},{:?},{:?},{:?},{:?}",
-            p.x, p.y, p.z, n.x, n.y, n.z, a.x, a.y, a.z
-        );
-    }
-    ("relief.csv".to_owned(), text.into_bytes())
-}
-
-/// Lines on which the finger passed.
-fn misses_file(relief: &Relief) -> Extra {
-    let mut text = String::from("x,y,z,ax,ay,az\n");
-    for line in &relief.misses {
-        let (p, a) = (line.at, line.along.get());
-        let _ = writeln!(text, "{:?},{:?},{:?},{:?},{:?},{:?}", p.x, p.y, p.z, a.x, a.y, a.z);
-    }
-    ("misses.csv".to_owned(), text.into_bytes())
-}
-
-fn jumps_file(relief: &Relief) -> Extra {
-    let mut text = String::from("x1,y1,z1,x2,y2,z2,mouth,radius_at_most\n");
-    for bridge in &relief.bridges {
-        let [a, b] = bridge.touches.map(|k| relief.touches[k].point);
-        let Bridge { mouth, radius_at_most, .. } = bridge;
-        let _ = writeln!(
-            text,
-            "{:?},{:?},{:?},{:?},{:?},{:?},{mouth:?},{radius_at_most:?}",
-            a.x, a.y, a.z, b.x, b.y, b.z
-        );
-    }
-    ("jumps.csv".to_owned(), text.into_bytes())
 }
