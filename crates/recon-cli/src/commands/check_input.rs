@@ -6,8 +6,8 @@ mod touches;
 use crate::cli::CheckInputArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
-use crate::pipeline::{LogSource, load};
-use recon_io::{Scene, TouchesError, TouchesErrorKind, is_bag, read_touches};
+use crate::pipeline::{LogSource, PlanarSource, load, read_planar};
+use recon_io::{PlanarScene, Scene, SceneErrorKind, TouchesError, TouchesErrorKind, is_bag, read_touches};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -42,7 +42,14 @@ fn understood(args: &CheckInputArgs) -> Result<Understood, CliError> {
             Err(error) => return Err(error.into()),
         }
     }
-    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::LogNeedsScene)?;
+    let path = args.scene.as_ref().ok_or(CliError::LogNeedsScene)?;
+    let scene = match Scene::read(path) {
+        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+            let known = PlanarScene::read_known(path)?;
+            return log::told_in_plane(&read_planar(&PlanarSource::File(&args.input), &known)?, known);
+        }
+        read => read?,
+    };
     let loaded = load(LogSource { path: &args.input, scene: &scene, mapping: args.mapping.as_deref() })?;
     log::told(loaded, &scene)
 }

@@ -59,6 +59,7 @@ pub(crate) fn reconstruct(
     scene: &Path,
     console: &Console,
 ) -> Result<Outcome, CliError> {
+    in_space_alone(args, scene)?;
     let mut known = PlanarScene::read_known(scene)?;
     let target = FolderTarget::new(&args.output, &[args.log.clone(), scene.to_owned()], args.force)?;
     let progress = Progress::new(2, console.is_quiet());
@@ -73,6 +74,26 @@ pub(crate) fn reconstruct(
     let explained = made.choice.as_ref().filter(|_| args.explain).map(|choice| explained(choice, true));
     explained.iter().for_each(|text| console.note(text));
     finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output, &title), console)
+}
+
+/// Refuses what would be left out in silence: files and ways of the space alone.
+fn in_space_alone(args: &ReconstructArgs, scene: &Path) -> Result<(), CliError> {
+    let asked = [
+        ("mapping", args.mapping.is_some()),
+        ("without-forces", args.without_forces),
+        ("export", !args.export.is_empty()),
+        ("mesh", !args.mesh.is_empty()),
+        ("mcap", args.mcap),
+    ];
+    match asked.into_iter().find(|(_, is_asked)| *is_asked) {
+        None => Ok(()),
+        Some((option, _)) => Err(CliError::Option {
+            option,
+            meant: "scenes in space",
+            found: "one in the plane (`plane = true`): leave it out",
+            path: scene.to_owned(),
+        }),
+    }
 }
 
 /// The title of a page.

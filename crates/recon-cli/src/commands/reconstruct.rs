@@ -8,16 +8,17 @@ use serde_json::Value;
 use std::path::Path;
 
 pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
-    if args.without_forces {
-        return super::without_forces::run(args, console);
-    }
-    let path = args.scene.as_ref().ok_or(CliError::LogNeedsScene)?;
+    let lacking = if args.without_forces { CliError::NoGravity } else { CliError::LogNeedsScene };
+    let path = args.scene.as_ref().ok_or(lacking)?;
     let scene = match Scene::read(path) {
         Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
             return super::planar::reconstruct(args, path, console);
         }
         read => read?,
     };
+    if args.without_forces {
+        return super::without_forces::run(args, &scene, console);
+    }
     let target = target(args)?;
     let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");

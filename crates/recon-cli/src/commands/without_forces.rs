@@ -7,13 +7,12 @@ use crate::pipeline::{three_palms, without_forces};
 use crate::progress::Progress;
 use recon_io::Scene;
 
-pub(super) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, CliError> {
-    let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::NoGravity)?;
+pub(super) fn run(args: &ReconstructArgs, scene: &Scene, console: &Console) -> Result<Outcome, CliError> {
     let target = super::reconstruct::target(args)?;
     let progress = Progress::new(4, console.is_quiet());
     progress.step("reading the log");
-    let (log, warnings) = three_palms(super::reconstruct::source(args, &scene), console)?;
-    let made = without_forces(log, warnings, &scene, &progress)?;
+    let (log, warnings) = three_palms(super::reconstruct::source(args, scene), console)?;
+    let made = without_forces(log, warnings, scene, &progress)?;
     progress.step("writing the results");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let figures = made.write(target, &title)?;

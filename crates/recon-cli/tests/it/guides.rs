@@ -102,7 +102,15 @@ fn what_is_understood_of_a_log_is_told() {
     assert_eq!(said["palms"][0]["force_axes"], "normal alone");
     // For a person, without a scene, and with units that do not go together.
     let told = scratch.run(&["check-input", "log.csv", "--scene", "scene.toml"]);
-    for word in ["version 1", "100 samples a second", "palm 3", "estimated as", "roughness"] {
+    for word in [
+        "version 1",
+        "units                  m, s, kg, N, rad: contacts of a sample are up to",
+        "frames                 contacts in the frame of each palm",
+        "100 samples a second",
+        "palm 3",
+        "estimated as",
+        "roughness",
+    ] {
         assert!(told.stdout.contains(word), "`{word}` is not in\n{}", told.stdout);
     }
     let lost = scratch.run(&["check-input", "log.csv"]);
@@ -112,6 +120,49 @@ fn what_is_understood_of_a_log_is_told() {
     scratch.write("long.csv", &long.text());
     let odd = scratch.run(&["check-input", "long.csv", "--scene", "scene.toml"]);
     assert!(odd.code == Some(4) && odd.stdout.contains("millimetres"), "{}", odd.stdout);
+}
+
+#[test]
+fn what_is_understood_of_a_log_in_the_plane_is_told() {
+    let scratch = Scratch::new("check_planar");
+    let run = scratch.run(&["planar", "-q"]);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    scratch.write("hinged.toml", "plane = true\ngravity = 9.81\n");
+    let hinged = ["check-input", "recon-planar/log.csv", "--scene", "hinged.toml"];
+    let told = scratch.run(&hinged);
+    for word in [
+        "planar sensor log, version 1: 2 palms",
+        "from the hinge",
+        "palm 2                 line",
+        "1000 samples",
+    ] {
+        assert!(
+            told.code == Some(0) && told.stdout.contains(word),
+            "`{word}` is not in\n{}{}",
+            told.stdout,
+            told.stderr
+        );
+    }
+    let said = json(&scratch.run(&[&hinged[..], &["--json"]].concat()).stdout);
+    assert_eq!((&said["kind"], &said["samples"]), (&"planar log".into(), &1401.into()));
+    // What is of the space alone is not left out in silence.
+    for option in [
+        &["--mcap"][..],
+        &["--mesh", "stl"],
+        &["--export", "urdf"],
+        &["--without-forces"],
+        &["-m", "map.toml"],
+    ] {
+        let words = ["reconstruct", "recon-planar/log.csv", "--scene", "hinged.toml", "-o", "out"];
+        let run = scratch.run(&[&words, option].concat());
+        assert!(
+            run.code == Some(2) && run.stderr.contains("in the plane"),
+            "{option:?}: {:?} {}",
+            run.code,
+            run.stderr
+        );
+        assert!(!scratch.path().join("out").exists());
+    }
 }
 
 #[test]

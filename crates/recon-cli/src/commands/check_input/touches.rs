@@ -7,25 +7,51 @@ use serde_json::json;
 /// Normals of five digits or more pass for exact.
 const EXACT_NORMALS: f64 = 1e-5;
 
+const OF_THE_OBJECT: &str = "any one that is fixed to the object; normals point out of it";
+const ABOVE_A_PLANE: &str = "body to world, z up, as unit quaternions and places of the body's origin";
+
 pub(super) fn told(found: &Touches) -> Understood {
-    let (kind, lengths, rounding, span) = match found {
+    let (kind, frames, lengths, rounding, span) = match found {
         Touches::Contacts { curves, rounding } => {
             let points = curves.iter().flatten().map(|contact| contact.point.to_array().to_vec());
-            ("contacts in space", curves.iter().map(Vec::len).collect(), Some(*rounding), span(points))
+            (
+                "contacts in space",
+                OF_THE_OBJECT,
+                curves.iter().map(Vec::len).collect(),
+                Some(*rounding),
+                span(points),
+            )
         }
         Touches::PlanarContacts { curves, rounding } => {
             let points = curves.iter().flatten().map(|contact| contact.point.to_array().to_vec());
-            ("contacts in the plane", curves.iter().map(Vec::len).collect(), Some(*rounding), span(points))
+            (
+                "contacts in the plane",
+                OF_THE_OBJECT,
+                curves.iter().map(Vec::len).collect(),
+                Some(*rounding),
+                span(points),
+            )
         }
         Touches::Poses(runs) => {
             let points = runs.iter().flatten().map(|pose| pose.p_WO.to_array().to_vec());
-            ("poses above a plane", runs.iter().map(Vec::len).collect::<Vec<_>>(), None, span(points))
+            (
+                "poses above a plane",
+                ABOVE_A_PLANE,
+                runs.iter().map(Vec::len).collect::<Vec<_>>(),
+                None,
+                span(points),
+            )
         }
     };
     let count = lengths.iter().sum::<usize>();
     let extents: Vec<String> = span.iter().map(|of| brief(*of)).collect();
     let mut lines = vec![
         ("kind".to_owned(), kind.to_owned()),
+        (
+            "units".to_owned(),
+            format!("m, and {} of length 1", if rounding.is_some() { "normals" } else { "quaternions" }),
+        ),
+        ("frames".to_owned(), frames.to_owned()),
         ("rows".to_owned(), format!("{count} in {} curves or runs", lengths.len())),
         ("extent".to_owned(), format!("{} m along the axes", extents.join(" x "))),
     ];
@@ -47,7 +73,7 @@ pub(super) fn told(found: &Touches) -> Understood {
         ));
     }
     let figures = json!({
-        "kind": kind, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
+        "kind": kind, "frames": frames, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
     });
     Understood { lines, figures, warnings }
 }
