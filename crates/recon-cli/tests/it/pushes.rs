@@ -39,14 +39,14 @@ fn a_log_becomes_an_outline_friction_modes_and_a_page() {
     let log = &summary["logs"][0];
     assert_eq!((&log["log"], &log["outline"]), (&3.into(), &"3 corners".into()));
     let friction = |key: &str| log["friction"][key].as_f64().unwrap();
-    let (value, deviation) = (friction("value"), friction("deviation"));
+    let (value, deviation) = (friction("coefficient"), friction("std"));
     assert!((value - 0.4).abs() < 3.0 * deviation && deviation < 0.05, "{value} +- {deviation}");
     // Four deviations of the sum of two variances are passed less than once in two thousand.
     for corner in log["corners"].as_array().unwrap() {
         let at = [0, 1].map(|i| corner["point_m"][i].as_f64().unwrap());
         let off = TRIANGLE.iter().map(|c| DVec2::from(*c).distance(DVec2::from(at)));
         let off = off.fold(f64::INFINITY, f64::min);
-        assert!(off < 4.0 * corner["deviation_m"].as_f64().unwrap(), "{corner}: {off}");
+        assert!(off < 4.0 * corner["std_m"].as_f64().unwrap(), "{corner}: {off}");
     }
     let modes = Table::parse(&scratch.read("out/modes.csv"));
     let column = |name: &str| modes.header.iter().position(|h| h == name).unwrap();

@@ -2,7 +2,7 @@
 
 use super::Told;
 use recon::observer::pushes::PushFriction;
-use recon_io::{Level, SummaryOf, Verdict, brief_to};
+use recon_io::{Level, SummaryOf, Verdict, brief_to, verdict_figures};
 use serde_json::{Value, json};
 
 /// Deviations between two halves beyond which they contradict each other: once in 370 logs by chance.
@@ -111,19 +111,20 @@ pub(super) fn summary(told: &[Told], radius: f64) -> Value {
 /// The summary of a log; what is not known is left out.
 fn figures(told: &Told) -> Value {
     let e = &told.estimate;
-    let pair = |(value, deviation): (f64, f64)| json!({"value": value, "deviation": deviation});
+    let pair = |(value, std): (f64, f64)| json!({"value": value, "std": std});
     let friction = |f: &PushFriction| {
         json!({
-            "value": f.value,
-            "deviation": f.deviation,
+            "coefficient": f.value,
+            "std": f.deviation,
             "at_slip_m_per_s": f.at_slip,
             "by_slip_s_per_m": pair(f.by_slip),
             "pushes": f.pushes,
         })
     };
-    let corners = e.outline.corners.iter().map(
-        |c| json!({"point_m": c.point.to_array(), "deviation_m": c.deviation(), "to_touch_m": c.to_touch}),
-    );
+    let corners =
+        e.outline.corners.iter().map(
+            |c| json!({"point_m": c.point.to_array(), "std_m": c.deviation(), "to_touch_m": c.to_touch}),
+        );
     let candidates = e
         .outline
         .candidates
@@ -132,10 +133,10 @@ fn figures(told: &Told) -> Value {
     let left_out = e.untouched.iter().map(|(n, why)| json!({"push": n, "why": why.to_string()}));
     let mut all = json!({
         "log": told.number,
-        "verdict": verdict(told).text,
+        "verdict": verdict_figures(&verdict(told)),
         "warnings": warnings(told),
-        "friction_deviation_between_pushes": e.spread[0],
-        "ratio_deviation_within_a_push": e.spread[1],
+        "std_friction_between_pushes": e.spread[0],
+        "std_ratio_within_a_push": e.spread[1],
         "ratio_seen": e.ratio_seen,
         "outline": e.outline.name,
         "area_m2": e.outline.line.area(),
@@ -143,16 +144,16 @@ fn figures(told: &Told) -> Value {
         "candidates": candidates.collect::<Vec<_>>(),
         "pushes": e.pushes.len(),
         "left_out": left_out.collect::<Vec<_>>(),
-        "touch_deviations_m": e.touch_deviations,
+        "std_touches_m": e.touch_deviations,
         "finger_ahead_at_first_touch_s": pair(e.clocks[0]),
         "finger_ahead_at_last_touch_s": pair(e.clocks[1]),
-        "compliance_m_per_N": e.compliance,
+        "compliance_m_per_n": e.compliance,
         "table_friction_length_m": e.table_length,
     });
     for (key, value) in [
         ("friction", e.friction.as_ref().map(friction)),
         ("friction_of_halves", told.halves.map(|halves| json!(halves.each_ref().map(friction)))),
-        ("force_noise_N", e.force_noise.map(Value::from)),
+        ("force_noise_n", e.force_noise.map(Value::from)),
     ] {
         if let Some(value) = value {
             all[key] = value;
@@ -169,7 +170,7 @@ pub(super) fn described(told: &Told, only: bool) -> String {
     text.extend(warnings(told).iter().map(|w| format!("Warning: {w}\n")));
     if let Some([a, b]) = told.halves {
         text += &format!(
-            "  friction of halves     {:.3} ± {:.3}, {:.3} ± {:.3}\n",
+            "  friction of halves     {:.3} +- {:.3}, {:.3} +- {:.3}\n",
             a.value, a.deviation, b.value, b.deviation
         );
     }
