@@ -33,7 +33,7 @@ pub enum BagErrorKind {
     /// The file does not begin as bags do.
     #[error(
         "is not an MCAP bag: {}; bags of other storage are converted by `ros2 bag convert`",
-        if found.is_empty() { "it is empty".to_owned() } else { format!("it begins with {found:02x?}") }
+        begins(found)
     )]
     NoBag {
         /// Its first bytes.
@@ -382,6 +382,20 @@ pub enum Unread {
         /// Why it is not.
         source: CdrError,
     },
+}
+
+/// The first bytes of a file, as text where they are.
+fn begins(found: &[u8]) -> String {
+    match str::from_utf8(found) {
+        Ok("") => "it is empty".to_owned(),
+        Ok(text) if !text.contains(|c: char| c.is_control() && !c.is_whitespace()) => {
+            format!("it begins with the text `{}`", text.split_whitespace().collect::<Vec<_>>().join(" "))
+        }
+        _ => {
+            let bytes: Vec<String> = found.iter().map(|byte| format!("{byte:02x}")).collect();
+            format!("it begins with the bytes {}", bytes.join(" "))
+        }
+    }
 }
 
 fn known() -> String {

@@ -69,7 +69,9 @@ pub enum LogFileErrorKind {
         expected: usize,
     },
     /// A field is not a number.
-    #[error("line {line}, column `{column}`: `{text}` is not a number")]
+    #[error(
+        "line {line}, column `{column}`: `{text}` is not a number; write one as 1.5e-3, or nan where there is no reading"
+    )]
     NotANumber {
         /// Line number.
         line: u64,

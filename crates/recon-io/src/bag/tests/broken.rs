@@ -48,7 +48,14 @@ fn a_topic_without_messages_is_there() {
 fn what_is_no_bag_is_told() {
     let error = parse_bag(&b"t,s1_1,s2_1\n"[..]).unwrap_err();
     assert!(matches!(error, BagErrorKind::NoBag { .. }), "{error}");
-    assert!(matches!(parse_bag(&b""[..]), Err(BagErrorKind::NoBag { .. })));
+    for (bytes, said) in [
+        (&b""[..], "it is empty"),
+        (b"t,s1_1\n0", "it begins with the text `t,s1_1 0`"),
+        (b"\x89MC", "it begins with the bytes 89 4d 43"),
+    ] {
+        let error = parse_bag(bytes).map(|_| ()).unwrap_err();
+        assert!(matches!(error, BagErrorKind::NoBag { .. }) && error.to_string().contains(said), "{error}");
+    }
     assert!(is_bag(path("fig5.mcap")) && !is_bag(path("mcap.json")) && !is_bag(path("")));
 }
 
