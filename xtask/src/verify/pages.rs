@@ -9,8 +9,15 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 /// Widths of the page, px: a telephone's, and a wide one.
 const WIDTHS: [u32; 2] = [400, 1400];
 
+/// Inputs that no command writes.
+const FILES: [(&str, &str); 3] = [
+    ("waves.toml", "[outline]\nwaves = { size = 0.05, depth = 0.25, count = 3 }\n[finger]\nradius = 0.012\n"),
+    ("pushes.csv", include_str!("../../../tests/data/pushes/pushes.csv")),
+    ("poses.csv", include_str!("../../../tests/data/pushes/poses.csv")),
+];
+
 /// Commands in their order, each with the page that it makes.
-const PAGES: [(&str, Option<&str>); 11] = [
+const PAGES: [(&str, Option<&str>); 14] = [
     ("init start", None),
     ("reconstruct start/log.csv --scene start/scene.toml -o planes", Some("planes/report.html")),
     (
@@ -22,7 +29,10 @@ const PAGES: [(&str, Option<&str>); 11] = [
     ("explore start/scene.toml --until gap=0.5 -o explored", Some("explored/report.html")),
     ("explore start/scene.toml --rolling --until gap=0.5 -o rolled", Some("rolled/report.html")),
     ("batch start --scene start/scene.toml -o many", Some("many/index.html")),
+    ("explore waves.toml --contour -o contour", Some("contour/report.html")),
+    ("pushes pushes.csv --poses poses.csv --radius 0.002 -o pushed", Some("pushed/report.html")),
     ("planar -o plane", Some("plane/report.html")),
+    ("bounds plane/contact_points.csv -o outline", Some("outline/report.html")),
     ("demo --scene pick-up -o simulated", Some("simulated/report.html")),
     (
         "reconstruct simulated/log.csv --scene simulated/scene.toml -o estimated",
@@ -67,6 +77,9 @@ pub(crate) fn check() -> Result<Outcome, String> {
         std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    for (name, text) in FILES {
+        std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))?;
+    }
     let mut wrong = Vec::new();
     for (line, page) in PAGES {
         say(&format!("$ recon {line}"));
