@@ -49,7 +49,7 @@ pub(super) fn bounds_and_errors(bounds: Option<&Bounds>, figures: &Value) -> Vec
         ("  angular velocity", "angular_velocity_rad_per_s", "rad/s"),
     ] {
         if let Some(error) = figures["largest_error"][key].as_f64() {
-            lines.push((name, format!("{error:.2e} {unit}")));
+            lines.push((name, format!("{} {unit}", brief_to(2, error))));
         }
     }
     lines

@@ -201,16 +201,17 @@ pub(crate) fn fit_words(report: &Value) -> String {
     }
     let number = |name: &str| report[name].as_f64().unwrap_or(f64::NAN);
     let mut text = format!(
-        "  fitted shape           {}, rms residual {:.3e} m\n",
+        "  fitted shape           {}, rms residual {} m\n",
         report["family"].as_str().unwrap_or_default(),
-        number("residual_m")
+        brief(number("residual_m"))
     );
     for parameter in report["parameters"].as_array().into_iter().flatten().take(NAMED) {
         let of = |name: &str| parameter[name].as_f64().unwrap_or(f64::NAN);
         let name = parameter["name"].as_str().unwrap_or_default();
         let unit = unit_of(name);
         let space = if unit.is_empty() { "" } else { " " };
-        text += &format!("    {name:<20} {} +- {:.1e}{space}{unit}\n", brief(of("value")), of("std"));
+        text +=
+            &format!("    {name:<20} {} +- {}{space}{unit}\n", brief(of("value")), brief_to(2, of("std")));
     }
     let count = report["parameters"].as_array().map_or(0, Vec::len);
     if count > NAMED {

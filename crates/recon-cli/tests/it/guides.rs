@@ -250,6 +250,19 @@ fn the_console_answers_what_was_asked() {
         line(&known.stdout, name);
         line(&asked.stdout, name);
     }
+    // The same number is the same on the page.
+    let page = scratch.read("out/report.html");
+    for (name, tile) in [
+        ("lower bound", "Lower bound"),
+        ("upper bound", "Upper bound"),
+        ("lower / upper", "Lower / upper"),
+        ("largest error: position", "Largest position error"),
+        ("angular velocity", "Largest rate error"),
+    ] {
+        let told = line(&asked.stdout, name);
+        let value = told.trim_start().strip_prefix(name).unwrap().split_whitespace().next().unwrap();
+        assert!(page.contains(&format!("<dt>{tile}</dt><dd>{value}<small>")), "{told}");
+    }
 }
 
 #[test]
