@@ -33,8 +33,7 @@ def columns(of: Log | Reconstruction | Following) -> dict[str, Array]:
         return table if of.doubts is None else table | {f"doubt_{i + 1}": of.doubts[:, i] for i in range(of.doubts.shape[1])}
     stds = {"cm": of.position_std, "v": of.velocity_std, "w": of.angular_velocity_std, "turn": of.turn_std}
     for name, std in stds.items():
-        if std is not None:
-            table |= {f"std_{name}{axis}": std[:, k] for k, axis in enumerate("xyz")}
+        table |= {f"std_{name}{axis}": std[:, k] for k, axis in enumerate("xyz")}
     return table | _modes(of) | {"relied_on": of.relied_on}
 
 

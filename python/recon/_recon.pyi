@@ -153,17 +153,17 @@ class Reconstruction:
     def angular_velocity(self) -> _Array:
         """Angular velocity, (n, 3), rad/s, world axes."""
     @property
-    def position_std(self) -> _Array | None:
-        """Standard deviations of the centre of mass, (n, 3), m, world axes; None where they are not known sample by sample."""
+    def position_std(self) -> _Array:
+        """Standard deviations of the centre of mass, (n, 3), m, world axes."""
     @property
-    def velocity_std(self) -> _Array | None:
-        """Standard deviations of the velocity, (n, 3), m/s, world axes, or None."""
+    def velocity_std(self) -> _Array:
+        """Standard deviations of the velocity, (n, 3), m/s, world axes."""
     @property
-    def angular_velocity_std(self) -> _Array | None:
-        """Standard deviations of the angular velocity, (n, 3), rad/s, world axes, or None."""
+    def angular_velocity_std(self) -> _Array:
+        """Standard deviations of the angular velocity, (n, 3), rad/s, world axes."""
     @property
-    def turn_std(self) -> _Array | None:
-        """Standard deviations of the turn since the first sample, (n, 3), rad, world axes, or None."""
+    def turn_std(self) -> _Array:
+        """Standard deviations of the turn since the first sample, (n, 3), rad, world axes."""
     @property
     def relied_on(self) -> NDArray[np.bool_]:
         """Whether the motion of a sample is relied on to within its deviations, (n,); of an estimate with one verdict for all samples, that."""
@@ -434,7 +434,7 @@ class Follower:
 def simulate(scene: Scene, words: Sequence[str], report: bool, progress: _Progress = None) -> Simulation: ...
 def reconstruct(log: Log, scene: Scene, words: Sequence[str], progress: _Progress = None) -> Reconstruction: ...
 def simulate_plane(scene: PlaneScene, words: Sequence[str], report: bool, progress: _Progress = None) -> PlaneSimulation: ...
-def reconstruct_plane(log: PlaneLog, scene: PlaneScene, identify: bool, progress: _Progress = None) -> PlaneReconstruction: ...
+def reconstruct_plane(log: PlaneLog, scene: PlaneScene, words: Sequence[str], progress: _Progress = None) -> PlaneReconstruction: ...
 def bounds_of_columns(
     names: Sequence[str], columns: Sequence[_Array], words: Sequence[str], progress: _Progress = None
 ) -> Bounds: ...

@@ -20,6 +20,7 @@ def reconstruct(
     *,
     identify: bool = False,
     without_forces: bool = False,
+    accuracy: float | None = None,
     mapping: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Reconstruction:
@@ -30,6 +31,8 @@ def reconstruct(
         planes through the origin, what they are (`[[palm]]`); the noise of the sensors, where it is known.
     identify: estimate mass and inertia too, with their standard deviations; those of the scene are not looked at.
     without_forces: use contacts and poses of the palms alone, for an ellipsoid.
+    accuracy: that is wanted, with 95 %, root mean square over the log: of the centre of mass in sizes of the object and of its turn in rad. The
+        cheapest model that reaches it is chosen; `summary["least_model"]` says what was modelled, what was left out, and what that costs.
     progress: called with the name of each step as it begins; an exception that it raises ends the work.
 
     The numbers are those of the command `recon reconstruct`, to the last bit. Other Python threads run meanwhile, and Ctrl-C stops the call
@@ -37,7 +40,7 @@ def reconstruct(
     `reliable` and `verdict`. Raises InputError where the log gives no estimate at all.
     """
     known = _scene(scene)
-    said = words(identify=identify, without_forces=without_forces)
+    said = words(identify=identify, without_forces=without_forces, accuracy=accuracy)
     return _reconstruct(log(source, known, mapping), known, said, progress)
 
 

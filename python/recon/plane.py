@@ -23,7 +23,7 @@ from recon._recon import PlaneSimulation as Simulation
 from recon._recon import reconstruct_plane as _reconstruct
 from recon._recon import simulate_plane as _simulate
 from recon._reconstruct import Progress
-from recon._words import flag, words
+from recon._words import words
 
 __all__ = ["Log", "Reconstruction", "Scene", "Simulation", "log_from_frame", "read_log", "reconstruct", "scene", "simulate"]
 
@@ -54,7 +54,12 @@ def log_from_frame(frame: Any, scene: SceneLike = None) -> Log:
 
 
 def reconstruct(
-    source: Any, scene: SceneLike, *, identify: bool = False, progress: Progress | None = None
+    source: Any,
+    scene: SceneLike,
+    *,
+    identify: bool = False,
+    accuracy: float | None = None,
+    progress: Progress | None = None,
 ) -> Reconstruction:
     """Motion, mass, moment of inertia and bounds on the outline, from a sensor log in the plane. No initial guess is needed.
 
@@ -62,6 +67,8 @@ def reconstruct(
     scene: a path, a dictionary or a `Scene`: gravity, the shapes of the palms and their friction where it is known, the noise of the sensors
         where it is known; mass and inertia, where they are left out, are estimated.
     identify: estimate mass and inertia too where the scene states them.
+    accuracy: that is wanted, with 95 %, root mean square over the log: of the centre of mass in sizes of the object and of its turn in rad. The
+        cheapest model that reaches it is chosen; `summary["least_model"]` says what was modelled, what was left out, and what that costs.
     progress: called with the name of each step as it begins; an exception that it raises ends the work.
 
     The numbers are those of the command `recon reconstruct`, to the last bit. Raises InputError where the log gives no estimate at all.
@@ -73,7 +80,7 @@ def reconstruct(
         log = Log._read(source, known)
     else:
         log = log_from_frame(source, known)
-    return _reconstruct(log, known, flag("identify", identify), progress)
+    return _reconstruct(log, known, words(identify=identify, accuracy=accuracy), progress)
 
 
 def simulate(

@@ -101,6 +101,22 @@ def test_the_folder_is_that_of_the_command(log: plane.Log, tmp_path: Path, comma
     assert recon.check(tmp_path / "ours")
 
 
+def test_no_more_is_modelled_than_an_accuracy_needs(tmp_path: Path, command: str) -> None:
+    # 350 samples in the time in which it falls over: some are left out.
+    log = plane.simulate({**SCENE, "simulation": {**SCENE["simulation"], "sample_rate": 5000.0}}).log
+    log.write(tmp_path / "log.csv")
+    (tmp_path / "scene.toml").write_text(TOML, encoding="utf-8")
+    words = [str(tmp_path / "log.csv"), "--scene", str(tmp_path / "scene.toml"), "--accuracy", "0.05"]
+    run(command, "reconstruct", *words, "-o", str(tmp_path / "theirs"), codes=(0, 4))
+    again = plane.read_log(tmp_path / "log.csv", tmp_path / "scene.toml")
+    result = plane.reconstruct(again, KNOWN, accuracy=0.05)
+    motion = table((tmp_path / "theirs" / "motion.csv").read_text(encoding="utf-8"))
+    assert np.array_equal(result.times, motion["t"]) and np.array_equal(result.position[:, 1], motion["y"])
+    assert result.summary["least_model"]["is_reached"] and len(result) == len(result.motion) < len(log)
+    with pytest.raises(recon.OptionError, match="accuracy"):
+        plane.reconstruct(log, KNOWN, accuracy=-1.0)
+
+
 def test_arrays_are_the_columns_of_the_tables(log: plane.Log, result: plane.Reconstruction, tmp_path: Path) -> None:
     result.write(tmp_path / "out")
     motion = table((tmp_path / "out" / "motion.csv").read_text(encoding="utf-8"))

@@ -52,6 +52,17 @@ def test_reconstruction_from_a_file_from_columns_and_from_arrays(files: Path, tm
             assert np.array_equal(made.motion[:, k], motion[name]), name
 
 
+def test_the_least_model_of_an_accuracy(files: Path, tmp_path: Path, command: str) -> None:
+    scene, path, theirs = files / "scene.toml", files / "log.csv", tmp_path / "theirs"
+    run(command, "reconstruct", str(path), "--scene", str(scene), "--accuracy", "1e-2", "-o", str(theirs), codes=(0, 4))
+    result, motion = recon.reconstruct(path, scene, accuracy=1e-2), table(theirs / "motion.csv")
+    assert np.array_equal(result.times, motion["t"]) and np.array_equal(result.motion, np.column_stack([motion[name] for name in MOTION]))
+    chosen = json.loads((theirs / "summary.json").read_text(encoding="utf-8"))["least_model"]
+    assert result.summary["least_model"]["is_reached"] == chosen["is_reached"]
+    with pytest.raises(recon.OptionError, match="accuracy"):
+        recon.reconstruct(path, scene, accuracy=1e-2, without_forces=True)
+
+
 def test_contacts_of_any_palms(palms_scene: str, palms_log: Path, palms_result: recon.Reconstruction, tmp_path: Path, command: str) -> None:
     path, theirs, result = palms_log, tmp_path / "theirs", palms_result
     run(command, "reconstruct", str(path), "--scene", palms_scene, "-o", str(theirs), codes=(0, 4))

@@ -675,7 +675,7 @@ pub(crate) struct FormatsArgs {
 
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
-Nothing is estimated. Told are the kind of file, palms with shapes and poses, rate and gaps, which palm touches when, what is measured and how
+Nothing is estimated. Told are the kind of file, units and frames, palms with shapes, rate and gaps, which palm touches when, what is measured and how
 noisy it is (as stated, or by the roughness of the readings), whether units go together, and which estimator takes the log.
 Exit code 4 says that something does not go together.
 

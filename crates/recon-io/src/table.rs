@@ -4,27 +4,35 @@ use crate::log::TRUTH;
 use crate::mode_columns::{mode_columns, probabilities, push_modes};
 use crate::number::push_row;
 use crate::report::{MotionState, PalmContact};
+use glam::DVec3;
 use recon::object_dynamics::MOST_PALMS;
 use recon::observer::contacts::ContactEstimate;
 use std::io::{self, Write};
 
-/// Writes the motion as `t` and the truth columns of the sensor-log format.
+/// Writes the motion as `t`, the truth columns of the sensor-log format, and its standard deviations: centre of mass (m), velocity (m/s),
+/// angular velocity (rad/s) and turn since the first sample (rad), world axes.
 ///
 /// # Errors
 /// Those of `to`.
-pub fn write_motion(times: &[f64], motion: &[MotionState], mut to: impl Write) -> io::Result<()> {
-    writeln!(to, "t,{}", TRUTH.join(","))?;
-    let mut row = String::new();
-    for (t, state) in times.iter().zip(motion) {
+pub fn write_motion(
+    times: &[f64],
+    motion: &[MotionState],
+    deviations: &[[DVec3; 4]],
+    mut to: impl Write,
+) -> io::Result<()> {
+    writeln!(to, "t,{},{}", TRUTH.join(","), DEVIATIONS.join(","))?;
+    let (mut row, mut numbers) = (String::new(), Vec::new());
+    for ((t, state), deviations) in times.iter().zip(motion).zip(deviations) {
         row.clear();
-        push_row(&mut row, &cells(*t, state));
+        numbers.clear();
+        numbers.extend(cells(*t, state));
+        numbers.extend(deviations.iter().flat_map(|of| of.to_array()));
+        push_row(&mut row, &numbers);
         writeln!(to, "{row}")?;
     }
     to.flush()
 }
 
-/// Standard deviations of an estimated motion: centre of mass (m), velocity (m/s), angular velocity (rad/s) and turn since the first
-/// sample (rad), world axes.
 const DEVIATIONS: [&str; 12] = [
     "std_cmx",
     "std_cmy",
@@ -40,7 +48,7 @@ const DEVIATIONS: [&str; 12] = [
     "std_turnz",
 ];
 
-/// Writes a motion estimated from contacts of `palms` palms: the columns of [`write_motion`], the deviations, the contact mode of each
+/// Writes a motion estimated from contacts of `palms` palms: the columns of [`write_motion`], the contact mode of each
 /// palm (`mode_i`: 0 off, 1 slides, 2 sticks), where they are estimated its probabilities to slide and to stick (`p_slide_i`, `p_stick_i`)
 /// and `relied_on` (1 or 0).
 ///

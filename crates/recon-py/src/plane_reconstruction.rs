@@ -14,16 +14,16 @@ use std::path::PathBuf;
 
 /// Estimates motion, mass and bounds on the outline.
 #[pyfunction]
-#[pyo3(signature = (log, scene, identify, progress=None))]
+#[pyo3(signature = (log, scene, words, progress=None))]
 pub(crate) fn reconstruct_plane(
     py: Python<'_>,
     log: &PlaneLog,
     scene: &PlaneScene,
-    identify: bool,
+    words: Vec<String>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PlaneReconstruction> {
     let (log, scene) = (log.log.clone(), scene.scene.clone());
-    let made = unlocked(py, progress, move |watch| PlaneReconstructed::of(&log, &scene, identify, watch))?;
+    let made = unlocked(py, progress, move |watch| PlaneReconstructed::of(&log, &scene, &words, watch))?;
     Ok(PlaneReconstruction { made, motion: PyOnceLock::new(), deviations: PyOnceLock::new() })
 }
 

@@ -75,11 +75,11 @@ impl Reconstruction {
         columns(self.motion(py)?.bind(py), from, to)
     }
 
-    fn deviation_part<'py>(&self, py: Python<'py>, which: isize) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let Some(of) = self.made.deviations() else { return Ok(None) };
+    fn deviation_part<'py>(&self, py: Python<'py>, which: isize) -> PyResult<Bound<'py, PyAny>> {
+        let of = self.made.deviations();
         let made = || table(py, flat3(of.iter().flatten().copied()), 12).map(Bound::unbind);
         let all = self.deviations.get_or_try_init(py, made)?;
-        columns(all.bind(py), 3 * which, 3 * which + 3).map(Some)
+        columns(all.bind(py), 3 * which, 3 * which + 3)
     }
 
     fn of_contacts<'py>(
@@ -195,27 +195,27 @@ impl Reconstruction {
         self.motion_part(py, 10, 13)
     }
 
-    /// Standard deviations of the centre of mass, (n, 3), m, world axes; None where they are not known sample by sample.
+    /// Standard deviations of the centre of mass, (n, 3), m, world axes.
     #[getter]
-    fn position_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn position_std<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.deviation_part(py, 0)
     }
 
-    /// Standard deviations of the velocity, (n, 3), m/s, world axes, or None.
+    /// Standard deviations of the velocity, (n, 3), m/s, world axes.
     #[getter]
-    fn velocity_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn velocity_std<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.deviation_part(py, 1)
     }
 
-    /// Standard deviations of the angular velocity, (n, 3), rad/s, world axes, or None.
+    /// Standard deviations of the angular velocity, (n, 3), rad/s, world axes.
     #[getter]
-    fn angular_velocity_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn angular_velocity_std<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.deviation_part(py, 2)
     }
 
-    /// Standard deviations of the turn since the first sample, (n, 3), rad, world axes, or None.
+    /// Standard deviations of the turn since the first sample, (n, 3), rad, world axes.
     #[getter]
-    fn turn_std<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn turn_std<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.deviation_part(py, 3)
     }
 

@@ -1,5 +1,6 @@
 use super::failure::Failure;
 use super::options::{parsed, unlike};
+use super::reconstruct::arguments;
 use crate::cli::Command;
 use crate::commands::planar::write_estimated;
 use crate::commands::simulate::{Made, MadeLog, in_the_plane};
@@ -159,23 +160,24 @@ pub struct PlaneReconstructed {
 }
 
 impl PlaneReconstructed {
-    /// Motion, mass and bounds on the outline; with `identify` mass and inertia of the scene are not looked at. Truth in the log is only
-    /// compared with.
+    /// Motion, mass and bounds on the outline. `options` are `--identify`, with which mass and inertia of the scene are not looked at, and
+    /// `--accuracy`. Truth in the log is only compared with.
     ///
     /// # Errors
     /// Why the log gives no estimate.
     pub fn of(
         log: &PlaneLog,
         scene: &PlaneScene,
-        identify: bool,
+        options: &[String],
         watch: Option<Watch>,
     ) -> Result<Self, Failure> {
+        let args = arguments(options, None)?;
         let mut known = with_palms(scene.known.clone());
-        if identify {
+        if args.identify {
             known.mass = None;
         }
         Progress::watched(watch).step("estimating the motion");
-        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known, None)?);
+        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known, args.accuracy)?);
         let figures = made.figures();
         let text = recon_io::with_brief_numbers(made.describe().trim_end());
         Ok(Self { made, log: log.clone(), figures, text })
@@ -206,9 +208,9 @@ impl PlaneReconstructed {
         self.made.evidence()
     }
 
-    /// Times of the motion, s.
+    /// Times of the motion, s: those of the log, or of the part of it that an accuracy needs.
     pub fn times(&self) -> Vec<f64> {
-        self.log.times()
+        self.made.log().samples().iter().map(|sample| sample.t).collect()
     }
 
     /// The motion at these times: centre of mass (m), orientation (rad), velocity (m/s), angular velocity (rad/s).

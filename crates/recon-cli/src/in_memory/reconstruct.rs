@@ -43,8 +43,8 @@ pub struct Body {
 }
 
 impl Reconstructed {
-    /// Motion, contacts, bounds, and where it is asked for mass and inertia. `options` are `--identify` and `--without-forces`. Truth in
-    /// the log is only compared with.
+    /// Motion, contacts, bounds, and where it is asked for mass and inertia. `options` are `--identify`, `--accuracy` and
+    /// `--without-forces`. Truth in the log is only compared with.
     ///
     /// # Errors
     /// Why the log gives no estimate.
@@ -161,9 +161,12 @@ impl Reconstructed {
     }
 
     /// Standard deviations at these times: centre of mass (m), velocity (m/s), angular velocity (rad/s), turn since the first sample
-    /// (rad), world axes. Known of contacts of any palms.
-    pub fn deviations(&self) -> Option<&[[DVec3; 4]]> {
-        Some(&self.any_palms()?.estimate.deviations)
+    /// (rad), world axes.
+    pub fn deviations(&self) -> &[[DVec3; 4]] {
+        match &self.made {
+            Made::Estimated(made) => &made.made.data.estimate.deviations,
+            Made::WithoutForces(made) => &made.found.deviations,
+        }
     }
 
     /// Whether the motion of a sample is relied on to within its deviations, where that is known sample by sample.
@@ -270,7 +273,8 @@ impl Reconstructed {
     }
 }
 
-fn arguments(options: &[String], folder: Option<&Path>) -> Result<ReconstructArgs, Failure> {
+/// Options of `recon reconstruct`.
+pub(super) fn arguments(options: &[String], folder: Option<&Path>) -> Result<ReconstructArgs, Failure> {
     let mut words = options.to_vec();
     words.push("log".to_owned());
     match parsed("reconstruct", &words)? {

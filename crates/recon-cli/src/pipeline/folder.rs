@@ -4,6 +4,7 @@ use super::least_model::choice_figures;
 use super::{AnyPalms, ContactRun, Estimated};
 use crate::error::CliError;
 use crate::interrupt::{Checked, check, while_writing};
+use glam::DVec3;
 use recon::contact_kinematics::at_once;
 use recon_io::{
     FiguresPage, FolderTarget, MotionState, OutputFolder, TriangleMesh, estimate_summary,
@@ -68,13 +69,13 @@ pub(crate) fn write_estimate_folder(
 pub(crate) fn write_touch_folder(
     target: FolderTarget,
     times: &[f64],
-    motion: &[MotionState],
+    (motion, deviations): (&[MotionState], &[[DVec3; 4]]),
     bounds: Option<&BoundsResult>,
     (page, figures): (&FiguresPage, &Value),
 ) -> Result<(), CliError> {
     while_writing(|| {
         let folder = Folder(target.begin()?);
-        folder.write("motion.csv", |to| write_motion(times, motion, to))?;
+        folder.write("motion.csv", |to| write_motion(times, motion, deviations, to))?;
         folder.write_bounds(bounds)?;
         folder.write("report.html", |to| write_figures_page(page, to))?;
         folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;

@@ -130,6 +130,11 @@ fn size(log: &ContactLog) -> f64 {
 }
 
 impl PlanarMotion {
+    /// The log as it was estimated: fewer samples where an accuracy needs no more.
+    pub(crate) fn log(&self) -> &ContactLog {
+        &self.log
+    }
+
     /// What was estimated from it.
     pub(crate) fn estimate(&self) -> &PlaneEstimate {
         &self.estimate
@@ -300,7 +305,7 @@ impl PlanarMotion {
         let mut line = |name: &str, value: String| text += &format!("  {name:<22} {value}\n");
         let as_stated = |(value, deviation): (f64, f64), unit: &str| match self.known_body {
             true => format!("{} {unit}, as stated", brief(value)),
-            false => format!("{} +- {} {unit}", brief(value), brief(deviation)),
+            false => format!("{} +- {} {unit}", brief(value), brief_to(2, deviation)),
         };
         line("size, about", format!("{} m (lengths are in metres)", brief_to(3, size(&self.log))));
         let (mass, share) = estimate.mass;

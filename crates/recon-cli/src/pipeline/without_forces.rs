@@ -99,7 +99,8 @@ impl WithoutForces {
     pub(crate) fn write(&self, target: FolderTarget, title: &str) -> Result<Value, CliError> {
         let figures = self.figures();
         let page = without_forces_page(title, self);
-        write_touch_folder(target, &self.times(), &self.motion(), self.bounded.as_ref(), (&page, &figures))?;
+        let motion = (&self.motion()[..], &self.found.deviations[..]);
+        write_touch_folder(target, &self.times(), motion, self.bounded.as_ref(), (&page, &figures))?;
         Ok(figures)
     }
 

@@ -212,7 +212,7 @@ pub(super) const FORMATS: [Format; 23] = [
     },
     Format {
         name: "motion",
-        about: "motion.csv: the estimated motion, in body axes of the estimate; from contacts of any palms with deviations, modes, their probabilities and marks",
+        about: "motion.csv: the estimated motion, in body axes of the estimate, with deviations; where forces were used with modes, their probabilities and marks",
         columns: &[
             needed("t", "s", "time"),
             needed(
