@@ -36,11 +36,12 @@ pub(crate) fn silhouette(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]
     }
 }
 
-/// Bounds, the contacts that they rest on, and where they are farthest apart.
+/// Bounds, the contacts that they rest on, the centre of mass, from which all are seen, and where the bounds are farthest apart.
 pub(crate) fn bounds_views(made: &BoundsResult, contacts: &[DVec3]) -> Vec<FigurePanel> {
     let upper = made.drawn.upper.as_ref().map_or(&[][..], |upper| &upper.mesh.vertices);
     let next = made.drawn.largest_gap.map(|gap| gap.outer);
-    views(&[("lower", &made.drawn.lower.mesh.vertices), ("upper", upper)], &[("contacts", contacts)], next)
+    let dots = [("contacts", contacts), ("centre", &[DVec3::ZERO][..])];
+    views(&[("lower", &made.drawn.lower.mesh.vertices), ("upper", upper)], &dots, next)
 }
 
 /// Convex bodies by the outlines of their corners, points as dots, and an arrow at where to touch next: along the axes, and from all around.
@@ -72,9 +73,12 @@ fn turning(bodies: &[(&str, &[DVec3])], dots: &[(&str, &[DVec3])], next: Option<
             [right.dot(d.truncate()), cos * d.z + sin * away]
         };
         let front = move |p: DVec3| sin * (p - centre).z - cos * ahead.dot((p - centre).truncate()) >= 0.0;
+        // A point alone is within the body, and is seen from everywhere.
+        let (alone, many): (Vec<_>, Vec<_>) = dots.iter().copied().partition(|(_, points)| points.len() == 1);
         let mut found = curves(bodies, &[], next, 0, move |p| Some(place(p)));
         let at = found.len().saturating_sub(usize::from(next.is_some()));
-        let dots = curves(&[], dots, None, DOTS_IN_TURN, move |p| front(p).then(|| place(p)));
+        let mut dots = curves(&[], &many, None, DOTS_IN_TURN, move |p| front(p).then(|| place(p)));
+        dots.extend(curves(&[], &alone, None, 1, move |p| Some(place(p))));
         found.splice(at..at, dots);
         found
     };

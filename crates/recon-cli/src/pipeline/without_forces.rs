@@ -23,6 +23,8 @@ const FIRST_OF_INERTIA: usize = 12;
 /// What contacts and poses of three flat palms tell.
 pub(crate) struct WithoutForces {
     pub(crate) found: NoForceEstimate,
+    /// Contacts at the nodes of the estimate, body axes, m from the centre of mass.
+    pub(crate) points: Vec<DVec3>,
     /// Bounds on the shape, where contacts are exact.
     pub(crate) bounded: Option<BoundsResult>,
     pub(crate) warnings: Vec<String>,
@@ -44,6 +46,7 @@ pub(crate) fn without_forces(
     let found = estimate_without_forces(&log, &known)?;
     progress.step("bounding the shape");
     let noise = found.evidence.noise_explains;
+    let contacts = contacts(&log, &found);
     let against = contradicted(&found.evidence.suspects);
     let bounded = if let Some(against) = against {
         warnings.push(format!(
@@ -58,7 +61,7 @@ pub(crate) fn without_forces(
         ));
         None
     } else {
-        match bounds(&contacts(&log, &found)) {
+        match bounds(&contacts) {
             Ok(mut bounded) => {
                 warnings.append(&mut bounded.warnings);
                 Some(bounded)
@@ -70,7 +73,8 @@ pub(crate) fn without_forces(
             }
         }
     };
-    Ok(WithoutForces { found, bounded, warnings })
+    let points = contacts.iter().map(|contact| contact.point).collect();
+    Ok(WithoutForces { found, points, bounded, warnings })
 }
 
 /// The constant that is farthest from what it was taken for, if chance does not take it there.
@@ -102,6 +106,15 @@ impl WithoutForces {
         let motion = (&self.motion()[..], &self.found.deviations[..]);
         write_touch_folder(target, &self.times(), motion, self.bounded.as_ref(), (&page, &figures))?;
         Ok(figures)
+    }
+
+    /// Moments and products of the inertia over mass (xx, yy, zz, xy, xz, yz), m^2, with their standard deviations.
+    pub(crate) fn inertia_over_mass(&self) -> [(f64, f64); 6] {
+        let (known, covariance) = (six(&self.found.inertia_per_mass), &self.found.covariance);
+        std::array::from_fn(|i| {
+            let at = FIRST_OF_INERTIA + i;
+            (known[i], covariance[(at, at)].max(0.0).sqrt())
+        })
     }
 
     /// The summary.
@@ -141,7 +154,7 @@ fn six(m: &DMat3) -> [f64; 6] {
 }
 
 fn figures(made: &WithoutForces) -> Value {
-    let WithoutForces { found, bounded, warnings } = made;
+    let WithoutForces { found, bounded, warnings, .. } = made;
     let NoForceEstimate { shape, evidence, covariance, .. } = found;
     let deviations = |first: usize| -> Vec<f64> {
         (first..first + 6).map(|i| covariance[(i, i)].max(0.0).sqrt()).collect()
@@ -173,7 +186,7 @@ fn figures(made: &WithoutForces) -> Value {
 }
 
 fn describe(made: &WithoutForces) -> String {
-    let WithoutForces { found, bounded, warnings } = made;
+    let WithoutForces { found, bounded, warnings, .. } = made;
     let NoForceEstimate { shape, evidence, .. } = found;
     let a = shape.semi_axes;
     let mut lines = vec![format!(
@@ -189,10 +202,9 @@ fn describe(made: &WithoutForces) -> String {
         brief(c.y),
         brief(c.z)
     ));
-    let deviation = |i: usize| found.covariance[(FIRST_OF_INERTIA + i, FIRST_OF_INERTIA + i)].max(0.0).sqrt();
-    let known = six(&found.inertia_per_mass);
+    let known = made.inertia_over_mass();
     for (of, range) in [("moments over mass", 0..3), ("products over mass", 3..6)] {
-        let words = range.map(|i| format!("{} +- {}", brief(known[i]), brief_to(2, deviation(i))));
+        let words = range.map(|i| format!("{} +- {}", brief(known[i].0), brief_to(2, known[i].1)));
         lines.push(format!("  {of:<22} {} m^2", words.collect::<Vec<_>>().join(", ")));
     }
     if let Some(bounded) = bounded {

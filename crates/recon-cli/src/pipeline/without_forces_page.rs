@@ -23,7 +23,9 @@ pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresP
         facts: facts(made),
         heading: "Shape and motion",
         panels: panels(made),
-        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes, and the motion over time with bands of two deviations.".to_owned(),
+        caption: "The bounds and the fitted ellipsoid as they are seen along the body axes and from all around, with the contacts and the centre of mass, \
+                  and the motion over time with bands of two deviations."
+            .to_owned(),
         evidence: rows(made),
     }
 }
@@ -43,6 +45,11 @@ fn facts(made: &WithoutForces) -> Vec<(&'static str, String, &'static str)> {
     let over = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     let axes = made.found.shape.semi_axes.to_array().map(|axis| brief_to(4, axis)).join(", ");
     let mut facts = vec![("Time", brief_to(4, over), "s"), ("Semi-axes", axes, "m")];
+    let names = ["Moment over mass, x", "Moment over mass, y", "Moment over mass, z"];
+    facts.extend(names.into_iter().zip(made.inertia_over_mass()).map(|(name, (value, std))| {
+        let std = format!("<small class=\"deviation\">± {}</small>", brief_to(2, std));
+        (name, brief(value) + &std, "m²")
+    }));
     if let Some(bounded) = &made.bounded {
         facts.push(("Lower bound", brief(bounded.drawn.lower.volume), "m³"));
         facts.push(match &bounded.drawn.upper {
@@ -59,7 +66,8 @@ fn panels(made: &WithoutForces) -> Vec<FigurePanel> {
     let next = bounded.and_then(|b| b.drawn.largest_gap).map(|gap| gap.outer);
     let ellipsoid = on_ellipsoid(made);
     let bodies = [("lower", corners(lower)), ("upper", corners(upper)), ("ellipsoid", &ellipsoid[..])];
-    let mut panels = views(&bodies, &[], next);
+    let dots = [("contacts", &made.points[..]), ("centre", &[DVec3::ZERO][..])];
+    let mut panels = views(&bodies, &dots, next);
     let over_time = |title: &str, unit: &str, what: fn(&MotionState) -> DVec3, deviation: usize| {
         over_time(made, [title, unit], what, deviation)
     };
@@ -134,6 +142,11 @@ fn rows(made: &WithoutForces) -> Vec<Evidence> {
             "The direction that the log tells worst.",
         ),
     ];
+    let products = ["product_xy", "product_xz", "product_yz"].into_iter().zip(["xy", "xz", "yz"]);
+    rows.extend(products.zip(&made.inertia_over_mass()[3..]).map(|((key, axes), (value, std))| {
+        let meaning = format!("Standard deviation {}.", brief_to(2, *std));
+        row(key, &format!("Product over mass, {axes}"), Number(*value), "m²", &meaning)
+    }));
     rows.extend(suspects(&of.suspects));
     rows
 }

@@ -147,6 +147,13 @@ fn a_log_without_forces_gives_the_ellipsoid() {
     assert!(
         figures["bounds"].is_null() && figures["warnings"].to_string().contains("no bounds on the shape")
     );
+    let page = scratch.read("recon-out/report.html");
+    let moments = run.stdout.lines().find_map(|line| line.trim().strip_prefix("moments over mass")).unwrap();
+    let told = moments.split_whitespace().next().unwrap();
+    let tile = format!("<dt>Moment over mass, x</dt><dd>{told}<small class=\"deviation\">±");
+    for part in [&tile[..], ">contacts</text>", ">centre</text>", "Product over mass, xy"] {
+        assert!(page.contains(part), "{part}");
+    }
     let motion = Table::parse(&scratch.read("recon-out/motion.csv"));
     assert!(motion.rows.len() > 30 && !scratch.path().join("recon-out/lower_bound.ply").exists());
     // Contacts noisy by 2.5e-3 m tell the place to that or better, and the turn from the second node on is not exact.
