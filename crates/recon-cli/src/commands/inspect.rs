@@ -58,7 +58,8 @@ pub(crate) fn run(args: &InspectArgs, console: &Console) -> Result<Outcome, CliE
             }
         }
     }
-    Ok(if found.is_whole() { Outcome::Done } else { Outcome::WithReservations })
+    let has_palms = !found.draft.mapping.palms.is_empty();
+    Ok(if found.is_whole() && has_palms { Outcome::Done } else { Outcome::WithReservations })
 }
 
 /// A log that was made of the bag, in words.

@@ -177,6 +177,11 @@ fn bags_that_cannot_be_used_say_why_and_leave_nothing() {
     refused(&["inspect", "scene.toml"], 3, &["is not an MCAP bag"]);
     refused(&["inspect", &whole, "-m", "scene.toml"], 3, &["mapping of topics", "gravity"]);
     refused(&["inspect", &whole, "-m", "map.toml", "-o", "map.toml"], 2, &["--mapping"]);
+    // There is nothing to make a log of.
+    let empty = recon_io::ResultBag::default().bytes().unwrap();
+    std::fs::write(dir.path().join("result.mcap"), empty).unwrap();
+    let run = dir.run(&["inspect", "result.mcap"]);
+    assert!(run.code == Some(4) && run.stdout.contains("No palm was found"), "{:?} {}", run.code, run.stdout);
     // What is broken is looked over all the same, and said to be.
     for (name, said) in [
         ("truncated", "was cut off"),

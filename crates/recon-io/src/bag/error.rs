@@ -327,7 +327,7 @@ pub enum BagErrorKind {
 #[non_exhaustive]
 pub enum Unread {
     /// Its schema is of no kind that is read.
-    #[error("messages of `{schema}` are not read; read are {}", known())]
+    #[error("{} are not read; read are {}", of_schema(schema), known())]
     Schema {
         /// Name of the schema.
         schema: String,
@@ -396,6 +396,11 @@ fn begins(found: &[u8]) -> String {
             format!("it begins with the bytes {}", bytes.join(" "))
         }
     }
+}
+
+/// Messages by their schema.
+fn of_schema(name: &str) -> String {
+    if name.is_empty() { "messages without a schema".to_owned() } else { format!("messages of `{name}`") }
 }
 
 fn known() -> String {

@@ -45,6 +45,12 @@ fn a_topic_without_messages_is_there() {
 }
 
 #[test]
+fn a_topic_without_a_schema_says_so() {
+    let unread = super::super::Unread::Schema { schema: String::new() };
+    assert!(unread.to_string().starts_with("messages without a schema are not read"), "{unread}");
+}
+
+#[test]
 fn what_is_no_bag_is_told() {
     let error = parse_bag(&b"t,s1_1,s2_1\n"[..]).unwrap_err();
     assert!(matches!(error, BagErrorKind::NoBag { .. }), "{error}");
