@@ -17,7 +17,7 @@ use recon_io::{
     BagError, CheckError, ExportError, LogFileError, MappingError, MeshError, OutputError, SceneError,
     TouchesError,
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 /// How a command ended that did not fail.
@@ -286,6 +286,12 @@ pub(crate) enum CliError {
 }
 
 impl CliError {
+    /// An option that has no meaning for a scene in the plane.
+    pub(crate) fn in_space_alone(option: &'static str, scene: &Path) -> Self {
+        let (meant, found) = ("scenes in space", "one in the plane (`plane = true`): leave it out");
+        Self::Option { option, meant, found, path: scene.to_owned() }
+    }
+
     /// The code of each kind is told in `recon --help`.
     pub(crate) fn code(&self) -> u8 {
         match self {

@@ -7,7 +7,8 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::interrupt::while_writing;
 use crate::pipeline::{
-    PlanarBounds, PlanarMotion, PlanarSource, explained, hinged_pair, planar_motion, read_planar, with_palms,
+    Extra, PlanarBounds, PlanarMotion, PlanarSource, explained, hinged_pair, planar_motion, read_planar,
+    with_palms,
 };
 use crate::progress::Progress;
 use recon::contact_kinematics::planar::FourierBody;
@@ -87,12 +88,7 @@ fn in_space_alone(args: &ReconstructArgs, scene: &Path) -> Result<(), CliError> 
     ];
     match asked.into_iter().find(|(_, is_asked)| *is_asked) {
         None => Ok(()),
-        Some((option, _)) => Err(CliError::Option {
-            option,
-            meant: "scenes in space",
-            found: "one in the plane (`plane = true`): leave it out",
-            path: scene.to_owned(),
-        }),
+        Some((option, _)) => Err(CliError::in_space_alone(option, scene)),
     }
 }
 
@@ -181,17 +177,23 @@ fn write_motion(folder: &mut OutputFolder, made: &PlanarMotion, title: &str) -> 
     Ok(())
 }
 
-/// Writes the folder of a motion that was estimated in memory.
+/// Writes the folder of a motion with more files beside; returns the summary.
 pub(crate) fn write_estimated(
     target: FolderTarget,
     made: &PlanarMotion,
     title: &str,
-) -> Result<(), CliError> {
+    extras: &[Extra],
+) -> Result<Value, CliError> {
+    let figures = made.figures();
     while_writing(|| {
         let mut folder = target.begin()?;
         write_motion(&mut folder, made, title)?;
-        folder.write("summary.json", |to| writeln!(to, "{:#}", made.figures()))?;
+        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        for (name, contents) in extras {
+            folder.write(name, |to| to.write_all(contents))?;
+        }
         folder.commit()?;
         Ok(())
-    })
+    })?;
+    Ok(figures)
 }

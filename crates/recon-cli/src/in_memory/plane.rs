@@ -275,7 +275,8 @@ impl PlaneReconstructed {
     pub fn write(&self, folder: &Path, force: bool) -> Result<(), Failure> {
         let inputs = [self.log.path.clone()];
         let target = FolderTarget::new(folder, &inputs, force).map_err(CliError::from)?;
-        Ok(write_estimated(target, &self.made, &self.title())?)
+        write_estimated(target, &self.made, &self.title(), &[])?;
+        Ok(())
     }
 
     fn title(&self) -> String {

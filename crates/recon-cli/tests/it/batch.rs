@@ -164,3 +164,38 @@ fn a_log_has_the_scene_of_its_name_and_bad_folders_are_named() {
     scratch.write("logs/slow.mcap", "");
     refused("logs", "rename one");
 }
+
+#[test]
+fn logs_in_the_plane_are_done_as_if_alone() {
+    let scratch = Scratch::new("batch-plane");
+    assert_eq!(scratch.run(&["planar", "-q"]).code, Some(0));
+    fs::create_dir(scratch.path().join("logs")).unwrap();
+    scratch.write("logs/turned.csv", &scratch.read("recon-planar/log.csv"));
+    scratch.write("scene.toml", "plane = true\ngravity = 9.81\n");
+    let (code, said) = batch(&scratch, &[]);
+    assert_eq!((code, &said["relied_on"]), (Some(0), &1.into()), "{said}");
+    let alone = scratch.run(&["reconstruct", "logs/turned.csv", "--scene", "scene.toml", "-o", "alone"]);
+    assert_eq!(alone.code, Some(0), "{}", alone.stderr);
+    for file in ["motion.csv", "summary.json", "report.html"] {
+        assert_eq!(
+            scratch.read(&format!("alone/{file}")),
+            scratch.read(&format!("out/turned/{file}")),
+            "{file}"
+        );
+    }
+    let summary: Value = serde_json::from_str(&scratch.read("alone/summary.json")).unwrap();
+    let told = Table::parse(&scratch.read("out/results.csv"));
+    let number = |name: &str| told.rows[0][told.column(name)].parse::<f64>().unwrap();
+    assert_eq!(summary["mass_kg"].as_f64(), Some(number("mass_kg")));
+    assert_eq!(summary["inertia_kg_m2"].as_f64(), Some(number("inertia_kg_m2")));
+    assert_eq!(summary["bounds"]["upper_area_m2"].as_f64(), Some(number("upper_area_m2")));
+    assert!(number("lower_volume_m3").is_nan() && number("relied_on_share") > 0.99);
+    // What is done is kept; what simulators take has no plane.
+    let (_, again) = batch(&scratch, &[]);
+    assert_eq!(again["rows"][0]["done_before"], true, "{again}");
+    let (code, refused) = batch(&scratch, &["--export", "urdf"]);
+    assert!(
+        code == Some(0) || refused["rows"][0]["why"].as_str().unwrap().contains("in the plane"),
+        "{refused}"
+    );
+}

@@ -1,12 +1,20 @@
 //! One log of many.
 
 use crate::cli::{BatchArgs, ShapeAs};
+use crate::commands::planar::write_estimated;
 use crate::console::causes;
 use crate::error::CliError;
-use crate::pipeline::{Asked, LogSource, estimated, load, sorted_with_forces};
+use crate::pipeline::{
+    Asked, Extra, LogSource, PlanarSource, estimated, load, planar_motion, read_planar, sorted_with_forces,
+    with_palms,
+};
 use crate::progress::Progress;
+use clap::ValueEnum;
 use recon::observer::contacts::ContactEstimate;
-use recon_io::{FolderTarget, Scene, brief_to, fingerprint, is_bag, with_brief_numbers};
+use recon::observer::planar::PlaneEstimate;
+use recon_io::{
+    FolderTarget, PlanarScene, Scene, SceneErrorKind, brief_to, fingerprint, is_bag, with_brief_numbers,
+};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -59,6 +67,23 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// Of results that are about to be written.
+    fn of(relied_on: bool, why: String, begun: Instant, path: Vec<PathPoint>) -> Self {
+        let state = if relied_on { State::ReliedOn } else { State::Doubtful };
+        let (log, folder, summary) = Default::default();
+        let seconds = begun.elapsed().as_secs_f64();
+        Self { log, folder, state, why, before: false, seconds, summary, path }
+    }
+
+    /// The file beside results by which a later run knows them.
+    fn origin(&self, args: &BatchArgs, log: &Path) -> Extra {
+        let relied_on = self.state == State::ReliedOn;
+        let of = json!({
+            "made_from": made_from(args, log), "relied_on": relied_on, "seconds": self.seconds, "path": self.path,
+        });
+        (MADE_FROM.to_owned(), format!("{of:#}\n").into_bytes())
+    }
+
     pub(super) fn describe(&self) -> String {
         let how =
             if self.before { "done before".to_owned() } else { format!("{} s", brief_to(2, self.seconds)) };
@@ -87,9 +112,14 @@ impl Row {
         self.evidence("std_mass").or_else(|| self.summary["std_mass_kg"].as_f64())
     }
 
-    /// A number of the evidence.
+    /// A number of the evidence; in the plane the summary has it itself.
     pub(super) fn evidence(&self, key: &str) -> Option<f64> {
-        self.summary["evidence"][key]["value"].as_f64()
+        let in_plane = match key {
+            "misfit" => self.summary["chi_squared"].as_f64(),
+            "relied_on" => self.summary["relied_on_share"].as_f64(),
+            _ => None,
+        };
+        self.summary["evidence"][key]["value"].as_f64().or(in_plane)
     }
 }
 
@@ -109,12 +139,15 @@ fn made_from(args: &BatchArgs, log: &Path) -> Option<Value> {
         |path: &Path| fingerprint(path).ok().map(|(bytes, crc32)| json!({ "bytes": bytes, "crc32": crc32 }));
     let scene = scene_of(args, log)?;
     let mapping = args.mapping.as_ref().map(|path| print(path));
+    let exported: Vec<_> =
+        args.export.iter().filter_map(|of| Some(of.to_possible_value()?.get_name().to_owned())).collect();
     Some(json!({
         "recon": env!("CARGO_PKG_VERSION"),
         "log": print(log)?,
         "scene": print(&scene)?,
         "mapping": mapping,
         "identify": args.identify,
+        "export": exported,
     }))
 }
 
@@ -158,7 +191,12 @@ pub(super) fn estimate_one(args: &BatchArgs, log: &Path) -> Row {
 
 fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<Row, CliError> {
     let scene_path = scene_of(args, log).ok_or(CliError::LogNeedsScene)?;
-    let scene = Scene::read(&scene_path)?;
+    let scene = match Scene::read(&scene_path) {
+        Err(error) if matches!(error.kind, SceneErrorKind::InPlane) => {
+            return made_in_plane(args, log, folder, (&scene_path, begun));
+        }
+        read => read?,
+    };
     let mapping = args.mapping.as_deref().filter(|_| is_bag(log));
     let loaded = load(LogSource { path: log, scene: &scene, mapping })?;
     let [title, _] = names(log);
@@ -167,15 +205,46 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     let relied_on = estimate.is_reliable();
     let data = &estimate.made.data;
     let (path, why) = (path(data.log.times(), &data.estimate), data.verdict.text.clone());
-    let seconds = begun.elapsed().as_secs_f64();
-    let of = json!({ "made_from": made_from(args, log), "relied_on": relied_on, "seconds": seconds, "path": path });
+    let row = Row::of(relied_on, why, begun, path);
     let mut extras = estimate.extras(&args.export, ShapeAs::Auto, None)?;
-    extras.push((MADE_FROM.to_owned(), format!("{of:#}\n").into_bytes()));
+    extras.push(row.origin(args, log));
     let inputs: Vec<PathBuf> = [log.to_owned(), scene_path].into_iter().chain(args.mapping.clone()).collect();
     let summary = estimate.write(FolderTarget::new(folder, &inputs, false)?, &extras)?;
-    let state = if relied_on { State::ReliedOn } else { State::Doubtful };
-    let (log, folder) = Default::default();
-    Ok(Row { log, folder, state, why, before: false, seconds, summary, path })
+    Ok(Row { summary, ..row })
+}
+
+/// The same of a log in the plane.
+fn made_in_plane(
+    args: &BatchArgs,
+    log: &Path,
+    folder: &Path,
+    (scene, begun): (&Path, Instant),
+) -> Result<Row, CliError> {
+    if !args.export.is_empty() {
+        return Err(CliError::in_space_alone("export", scene));
+    }
+    let mut known = PlanarScene::read_known(scene)?;
+    if args.identify {
+        known.mass = None;
+    }
+    let read = read_planar(&PlanarSource::File(log), &known)?;
+    let times: Vec<f64> = read.samples().iter().map(|sample| sample.t).collect();
+    let made = planar_motion(read, &with_palms(known), None)?;
+    let row = Row::of(made.is_reliable(), made.verdict(), begun, path_in_plane(&times, made.estimate()));
+    let [title, _] = names(log);
+    let target = FolderTarget::new(folder, &[log.to_owned(), scene.to_owned()], false)?;
+    let summary = write_estimated(target, &made, &title, &[row.origin(args, log)])?;
+    Ok(Row { summary, ..row })
+}
+
+fn path_in_plane(times: &[f64], found: &PlaneEstimate) -> Vec<PathPoint> {
+    let step = times.len().div_ceil(SHOWN).max(1);
+    let point = |k: usize| {
+        let (p, std) = (found.states[k].p_WCm, found.deviations[k].p_WCm);
+        let known = |std: f64| Some(std).filter(|std| std.is_finite());
+        ([times[k], p.x, p.y, 0.0], [known(std.x), known(std.y), None])
+    };
+    (0..times.len()).step_by(step).map(point).collect()
 }
 
 fn path(times: &[f64], found: &ContactEstimate) -> Vec<PathPoint> {

@@ -2,7 +2,7 @@
 
 use super::TABLE;
 use super::one::{Row, State};
-use recon_io::{BatchPage, FigureCurve, FigurePanel, Level, LogCard, brief_to};
+use recon_io::{BatchPage, FigureCurve, FigurePanel, Level, LogCard, SummaryOf, brief_to};
 use std::path::Path;
 
 /// What the page shows of the logs of a folder.
@@ -48,6 +48,7 @@ fn card(row: &Row) -> LogCard {
 /// Where the centre of mass went.
 fn picture(row: &Row) -> Option<FigurePanel> {
     let (first, _) = row.path.first()?;
+    let in_plane = row.summary["schema"] == SummaryOf::PlaneReconstruction.schema();
     let curve = |axis: usize| FigureCurve {
         name: ["x", "y", "z"][axis - 1].to_owned(),
         points: row.path.iter().map(|(at, _)| [at[0], at[axis] - first[axis]]).collect(),
@@ -56,7 +57,7 @@ fn picture(row: &Row) -> Option<FigurePanel> {
     };
     Some(FigurePanel {
         axes: ["t in s".to_owned(), "way in m".to_owned()],
-        curves: (1..4).map(curve).collect(),
+        curves: (1..if in_plane { 3 } else { 4 }).map(curve).collect(),
         ..FigurePanel::default()
     })
 }

@@ -15,12 +15,23 @@ const OF_EVIDENCE: [(&str, &str); 8] = [
     ("relied_on_share", "relied_on"),
 ];
 
+/// Columns of what is estimated in the plane, by their keys in the summary, which has tensors there for what is in space.
+const IN_PLANE: [&str; 2] = ["inertia_kg_m2", "std_inertia_kg_m2"];
+
 /// The table as CSV: `nan` where a number is not known.
 pub(super) fn table(rows: &[Row]) -> String {
     let mut header: Vec<&str> =
         vec!["log", "state", "seconds", "samples", "duration_s", "mass_kg", "std_mass_kg"];
     header.extend(OF_EVIDENCE.iter().map(|(name, _)| *name));
-    header.extend(["lower_volume_m3", "upper_volume_m3", "warnings", "why"]);
+    header.extend(IN_PLANE);
+    header.extend([
+        "lower_volume_m3",
+        "upper_volume_m3",
+        "lower_area_m2",
+        "upper_area_m2",
+        "warnings",
+        "why",
+    ]);
     let mut text = header.join(",") + "\n";
     for row in rows {
         text += &line(row);
@@ -37,7 +48,9 @@ fn line(row: &Row) -> String {
     cells.extend([of(&summary["samples"]), number(ends.map(|(first, last)| last - first))]);
     cells.extend([number(row.mass()), number(row.std_mass())]);
     cells.extend(OF_EVIDENCE.iter().map(|(_, key)| number(row.evidence(key))));
-    cells.extend(["lower_volume_m3", "upper_volume_m3"].map(|key| of(&summary["bounds"][key])));
+    cells.extend(IN_PLANE.map(|key| of(&summary[key])));
+    let bounds = ["lower_volume_m3", "upper_volume_m3", "lower_area_m2", "upper_area_m2"];
+    cells.extend(bounds.map(|key| of(&summary["bounds"][key])));
     cells.push(summary["warnings"].as_array().map_or(0, Vec::len).to_string());
     cells.push(quoted(&row.why));
     cells.join(",") + "\n"

@@ -300,7 +300,13 @@ pub(super) const FORMATS: [Format; 23] = [
                 "-",
                 "share of the samples whose motion is relied on, where that is known",
             ),
+            needed(
+                "inertia_kg_m2, std_inertia_kg_m2",
+                "kg m^2",
+                "of a log in the plane: moment of inertia and its standard deviation",
+            ),
             needed("lower_volume_m3, upper_volume_m3", "m^3", "volumes of the bounds"),
+            needed("lower_area_m2, upper_area_m2", "m^2", "of a log in the plane: areas of the bounds"),
             needed("warnings", "-", "how many there are"),
             needed("why", "-", "the verdict, or why the log was skipped"),
         ],
