@@ -21,6 +21,8 @@ const SEEN: f64 = 0.01;
 /// Length of the arrow as a share of the body's radius, and its head as a share of the arrow.
 const ARROW: f64 = 0.35;
 const HEAD: f64 = 0.3;
+/// Half of the width of a cross as a share of the body's radius.
+const CROSS: f64 = 0.05;
 
 /// A point as it is seen.
 pub(crate) fn seen(point: DVec3, axes: [usize; 2]) -> [f64; 2] {
@@ -75,10 +77,9 @@ fn turning(bodies: &[(&str, &[DVec3])], dots: &[(&str, &[DVec3])], next: Option<
         let front = move |p: DVec3| sin * (p - centre).z - cos * ahead.dot((p - centre).truncate()) >= 0.0;
         // A point alone is within the body, and is seen from everywhere.
         let (alone, many): (Vec<_>, Vec<_>) = dots.iter().copied().partition(|(_, points)| points.len() == 1);
-        let mut found = curves(bodies, &[], next, 0, move |p| Some(place(p)));
-        let at = found.len().saturating_sub(usize::from(next.is_some()));
-        let mut dots = curves(&[], &many, None, DOTS_IN_TURN, move |p| front(p).then(|| place(p)));
-        dots.extend(curves(&[], &alone, None, 1, move |p| Some(place(p))));
+        let mut found = curves(bodies, &alone, next, 1, move |p| Some(place(p)));
+        let at = found.iter().take_while(|curve| curve.filled).count();
+        let dots = curves(&[], &many, None, DOTS_IN_TURN, move |p| front(p).then(|| place(p)));
         found.splice(at..at, dots);
         found
     };
@@ -116,14 +117,32 @@ fn curves(
         let points = points.iter().step_by(step).filter_map(|p| place(*p)).collect();
         FigureCurve { name: (*name).to_owned(), points, dots: true, ..FigureCurve::default() }
     };
-    let mut found: Vec<FigureCurve> = bodies.iter().map(outline).chain(dots.iter().map(dotted)).collect();
+    let mut found: Vec<FigureCurve> = bodies.iter().map(outline).collect();
+    let outlines: Vec<DVec2> =
+        found.iter().flat_map(|curve| &curve.points).map(|p| DVec2::from_array(*p)).collect();
+    found.extend(dots.iter().map(|named| match named {
+        (name, [alone]) => cross(name, place(*alone), &outlines),
+        _ => dotted(named),
+    }));
     found.retain(|curve| !curve.points.is_empty());
     if let Some(at) = next.and_then(&place) {
-        let outlines = found.iter().filter(|curve| curve.filled).flat_map(|curve| &curve.points);
-        let points: Vec<DVec2> = outlines.map(|p| DVec2::from_array(*p)).collect();
-        found.push(touch_next(DVec2::from_array(at), &points));
+        found.push(touch_next(DVec2::from_array(at), &outlines));
     }
     found
+}
+
+/// A point alone, which a dot among many would hide.
+fn cross(name: &str, at: Option<[f64; 2]>, around: &[DVec2]) -> FigureCurve {
+    let arm = CROSS * reach(around).1;
+    let points =
+        at.map_or(Vec::new(), |[x, y]| vec![[x - arm, y], [x + arm, y], [x, y], [x, y + arm], [x, y - arm]]);
+    FigureCurve { name: name.to_owned(), points, ..FigureCurve::default() }
+}
+
+/// The middle of some points, and how far the farthest is from it.
+fn reach(points: &[DVec2]) -> (DVec2, f64) {
+    let middle = points.iter().sum::<DVec2>() / points.len().max(1) as f64;
+    (middle, points.iter().map(|p| p.distance(middle)).fold(0.0, f64::max))
 }
 
 /// An outline without corners that are nearer to the one before than can be seen.
@@ -140,8 +159,7 @@ fn coarse(outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 /// An arrow from outside of what these points surround that ends where to touch next.
 pub(crate) fn touch_next(at: DVec2, around: &[DVec2]) -> FigureCurve {
-    let middle = around.iter().sum::<DVec2>() / around.len().max(1) as f64;
-    let size = around.iter().map(|p| p.distance(middle)).fold(0.0, f64::max);
+    let (middle, size) = reach(around);
     let shaft = ARROW * size * (at - middle).normalize_or(DVec2::Y);
     let side = |turn: f64| at + HEAD * DVec2::from_angle(turn).rotate(shaft);
     let points = [at + shaft, at, side(0.5), at, side(-0.5)].map(|p| p.to_array()).to_vec();
