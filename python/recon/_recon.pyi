@@ -165,6 +165,9 @@ class Reconstruction:
     def turn_std(self) -> _Array:
         """Standard deviations of the turn since the first sample, (n, 3), rad, world axes."""
     @property
+    def pose_covariance(self) -> _Array | None:
+        """Covariances of position and turn together, (n, 6, 6), m and rad, world axes; None without forces."""
+    @property
     def relied_on(self) -> NDArray[np.bool_]:
         """Whether the motion of a sample is relied on to within its deviations, (n,); of an estimate with one verdict for all samples, that."""
     @property

@@ -80,6 +80,10 @@ def test_any_palms_have_deviations_modes_and_marks(
     assert result.modes.shape == (n, 4) and set(np.unique(result.modes)) <= {0, 1, 2}
     for std in (result.position_std, result.velocity_std, result.angular_velocity_std, result.turn_std):
         assert std.shape == (n, 3) and (std >= 0.0).all()
+    covariance = result.pose_covariance
+    assert covariance.shape == (n, 6, 6) and np.array_equal(covariance, covariance.transpose(0, 2, 1))
+    std = np.hstack([result.position_std, result.turn_std])
+    assert np.allclose(np.einsum("kii->ki", covariance), std**2, rtol=1e-9, atol=0.0)
     assert result.relied_on.dtype == bool and result.relied_on.shape == (n,)
 
 

@@ -142,7 +142,8 @@ palm the size (object.size). motion.csv says at each sample whether it is relied
 The output folder appears as a whole or not at all: motion.csv, contact_curves.csv, radius_functions.csv, summary.json,
 lower_bound.ply, upper_bound.ply, report.html, which opens in any browser, and manifest.json, which lists them. With --export it holds the object for
 simulators too: object.xml (MJCF), object.urdf, and the meshes that these refer to. With --mcap it holds result.mcap, a bag that Foxglove
-shows: motion with covariance, contacts, forces and bounds, at the stamps of the bag that was read.
+shows: motion with covariance, contacts, forces and bounds, at the stamps of the bag that was read. With --covariance it holds
+covariance.csv: of motion.csv the covariances of position and turn, where that has their deviations.
 
 The bounds hold at 95 % confidence for the noise of the sensors and the error of the motion, in the axes that bounds_frame in
 summary.json names. A motion that is not to be relied on gives none.
@@ -196,6 +197,9 @@ pub(crate) struct ReconstructArgs {
     /// Write motion, contacts, forces and bounds as a bag too (result.mcap), for Foxglove and Rerun
     #[arg(long, conflicts_with = "without_forces")]
     pub(crate) mcap: bool,
+    /// Write the covariance of the pose at all samples too (covariance.csv)
+    #[arg(long, conflicts_with = "without_forces")]
+    pub(crate) covariance: bool,
     /// Shape of the exported object
     #[arg(long, default_value = "auto", requires = "export")]
     pub(crate) export_shape: ShapeAs,

@@ -77,6 +77,27 @@ pub fn write_estimated_motion(
     to.flush()
 }
 
+/// Writes covariances of poses over time: position (m) and turn (rad), world axes, row by row on and above the diagonal.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_covariances(times: &[f64], covariances: &[[[f64; 6]; 6]], mut to: impl Write) -> io::Result<()> {
+    const POSE: [&str; 6] = ["cmx", "cmy", "cmz", "turnx", "turny", "turnz"];
+    let above = || (0..6).flat_map(|i| (i..6).map(move |k| (i, k)));
+    let names: Vec<String> = above().map(|(i, k)| format!("cov_{}_{}", POSE[i], POSE[k])).collect();
+    writeln!(to, "t,{}", names.join(","))?;
+    let (mut row, mut numbers) = (String::new(), Vec::new());
+    for (t, of) in times.iter().zip(covariances) {
+        row.clear();
+        numbers.clear();
+        numbers.push(*t);
+        numbers.extend(above().map(|(i, k)| of[i][k]));
+        push_row(&mut row, &numbers);
+        writeln!(to, "{row}")?;
+    }
+    to.flush()
+}
+
 /// How probable it is that each of some palms slides and that it sticks, sample by sample, to a millionth: more of the digits are chance.
 /// None where it is not estimated.
 #[must_use]

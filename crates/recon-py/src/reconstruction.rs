@@ -219,6 +219,14 @@ impl Reconstruction {
         self.deviation_part(py, 3)
     }
 
+    /// Covariances of position and turn together, (n, 6, 6), m and rad, world axes; None without forces.
+    #[getter]
+    fn pose_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let all = self.made.pose_covariances();
+        let numbers = all.as_flattened().as_flattened();
+        if all.is_empty() { Ok(None) } else { block(py, numbers.to_vec(), [6, 6]).map(Some) }
+    }
+
     /// Whether the motion of a sample is relied on to within its deviations, (n,), bool; of an estimate with one verdict for all samples,
     /// that.
     #[getter]

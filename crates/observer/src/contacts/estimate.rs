@@ -13,7 +13,7 @@ use super::record::Record;
 use super::relabel::{apart, surer};
 use super::rivals::is_short;
 use super::rows::Rows;
-use super::samples::{Deviations, at_all};
+use super::samples::{Deviations, at_all, poses_at_all};
 use super::search::{problem, thinned};
 use super::sharp::{is_rounded, is_sharp, leaves_something};
 use super::slips::Known;
@@ -78,6 +78,8 @@ pub struct ContactEstimate {
     pub inertia_deviations: [f64; 3],
     /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
     pub pose_errors: Option<PoseErrors>,
+    /// Covariances of the pose at all samples: centre of mass (m), turn since the first sample (rad), world axes. None unless asked for, nor in the plane.
+    pub pose_covariances: Vec<[[f64; 6]; 6]>,
     /// Samples and palms, from 0, of contacts that were misread: off by far more than those around them allow. They count as where these say.
     pub misread: Vec<(usize, usize)>,
     /// What the data say of constants of the sensors that were taken as known; none unless asked for, nor of a log that is as good as exact.
@@ -460,6 +462,10 @@ impl Found<'_> {
         let relied_on: Vec<bool> = deviations.iter().enumerate().map(one).collect();
         let sound: Vec<usize> = (0..nodes.len()).filter(|&j| relied_on[nodes[j]]).collect();
         let joint = || pose_errors(problem, solved, covariances, &sound, (own, known.is_some(), wider));
+        let poses = || {
+            let all = poses_at_all(log, problem, unknowns, covariances);
+            all.iter().map(|of| (of * (wider * wider)).into()).collect()
+        };
         let of_body = covariances.of_body();
         let deviation = |i: usize| of_body[(i, i)].max(0.0).sqrt() * wider;
         ContactEstimate {
@@ -468,6 +474,7 @@ impl Found<'_> {
             suspects: suspects.clone(),
             explanations: explanations.clone(),
             pose_errors: if options.pose_errors { joint() } else { None },
+            pose_covariances: if options.pose_covariances && !options.planar { poses() } else { Vec::new() },
             relied_on,
             deviations,
             modes,

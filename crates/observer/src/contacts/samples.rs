@@ -40,6 +40,33 @@ pub(super) fn at_all<const P: usize>(
     all
 }
 
+/// Covariances of the centre of mass and the turn at each sample, world axes: their diagonals are what [`at_all`] has as deviations.
+pub(super) fn poses_at_all<const P: usize>(
+    log: &Record,
+    problem: &Problem,
+    found: &Unknowns,
+    covariances: &Covariances<P>,
+) -> Vec<Matrix6<f64>> {
+    const POSE: [usize; 6] = [0, 1, 2, 9, 10, 11];
+    let own = problem.at_samples(found);
+    let of = |j: usize| {
+        let all = covariance(&own[j], &found.body, j, covariances);
+        Matrix6::from_fn(|i, k| all[(POSE[i], POSE[k])])
+    };
+    let known: Vec<Matrix6<f64>> = (0..own.len()).map(of).collect();
+    let nodes = problem.node_samples();
+    let mut all = Vec::with_capacity(log.times.len());
+    for j in 0..own.len() {
+        all.push(known[j]);
+        if let Some(&end) = nodes.get(j + 1) {
+            let link = Link::new(log, problem, &found.body, (j, [own[j], own[j + 1]]), nodes[j]..end);
+            all.extend((nodes[j] + 1..end).map(|k| link.pose(log, k, [&known[j], &known[j + 1]])));
+        }
+    }
+    // But for rounding they are symmetric.
+    all.iter().map(|of| 0.5 * (of + of.transpose())).collect()
+}
+
 /// Samples from one node to the next.
 struct Link<'a> {
     body: &'a Body,
@@ -87,7 +114,7 @@ impl<'a> Link<'a> {
     /// a Brownian bridge (how far the motion came tells hardly more of them, as that is not known better), places that of an integrated one.
     fn at(&self, log: &Record, k: usize, ends: [&Deviations; 2]) -> (Motion, Deviations) {
         let h = self.duration;
-        let s = (log.times[k] - log.times[self.samples.start]) / h;
+        let (s, _) = self.place(log, k);
         let part = |of: &Tangent, i: usize| DVec3::new(of[i], of[i + 1], of[i + 2]);
         let (left, bent) = (&self.left, &self.bent);
         // Of a cubic that ends with a value and a slope; and the slope of that which noise bent, over the duration.
@@ -108,6 +135,22 @@ impl<'a> Link<'a> {
             q: (exponential(turned) * before.q).normalize(),
         };
         (motion, self.deviations(s, turn.K, ends))
+    }
+
+    /// Share of the link that is behind a sample inside, and the inverse inertia there.
+    fn place(&self, log: &Record, k: usize) -> (f64, DMat3) {
+        let s = (log.times[k] - log.times[self.samples.start]) / self.duration;
+        let before = &self.carried[k - self.samples.start - 1];
+        (s, self.body.turn(before.q, before.L).K)
+    }
+
+    /// Covariance of the pose at a sample inside, by the same bridges.
+    fn pose(&self, log: &Record, k: usize, ends: [&Matrix6<f64>; 2]) -> Matrix6<f64> {
+        let (s, K) = self.place(log, k);
+        let mut to = Matrix6::from_diagonal_element(self.body.inverse_mass());
+        to.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from(K));
+        let share = (s * (1.0 - s)).powi(3) * self.duration * self.duration / 3.0;
+        ends[0] * (1.0 - s) + ends[1] * s + to * self.noise * to.transpose() * share
     }
 
     fn deviations(&self, s: f64, K: DMat3, ends: [&Deviations; 2]) -> Deviations {

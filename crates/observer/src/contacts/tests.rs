@@ -18,6 +18,7 @@ mod impulses;
 mod known;
 mod lasting;
 mod mode_odds;
+mod poses;
 mod rough;
 mod steady;
 mod suspects;

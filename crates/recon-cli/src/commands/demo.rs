@@ -37,7 +37,14 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
     let title = "An ellipsoid on three palms (Fig. 5 of Moll and Erdmann, 2002)";
     let mut log = Vec::new();
     write_log(&simulated.log, &mut log).map_err(CliError::StandardOutput)?;
-    let asked = Asked { path: Path::new("log.csv"), scene: &scene, title, identify: false, accuracy: None };
+    let asked = Asked {
+        path: Path::new("log.csv"),
+        scene: &scene,
+        title,
+        identify: false,
+        accuracy: None,
+        covariances: false,
+    };
     let made = estimated_planes(simulated.log, &asked, Vec::new(), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];

@@ -85,6 +85,7 @@ fn in_space_alone(args: &ReconstructArgs, scene: &Path) -> Result<(), CliError> 
         ("export", !args.export.is_empty()),
         ("mesh", !args.mesh.is_empty()),
         ("mcap", args.mcap),
+        ("covariance", args.covariance),
     ];
     match asked.into_iter().find(|(_, is_asked)| *is_asked) {
         None => Ok(()),

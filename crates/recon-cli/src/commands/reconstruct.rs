@@ -31,11 +31,15 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
         title: &title,
         identify: args.identify,
         accuracy: args.accuracy,
+        covariances: args.covariance || args.mcap,
     };
     let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
     let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
     extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
+    if args.covariance {
+        extras.push(made.covariances()?);
+    }
     let figures = made.write(target, &extras)?;
     drop(progress);
     if let Some(choice) = made.made.choice.as_ref().filter(|_| args.explain) {

@@ -73,6 +73,7 @@ impl Reconstructed {
                 title: &title,
                 identify: args.identify,
                 accuracy: args.accuracy,
+                covariances: true,
             };
             (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), stand)
         };
@@ -96,6 +97,14 @@ impl Reconstructed {
     /// What the command prints.
     pub fn text(&self) -> &str {
         &self.text
+    }
+
+    /// Covariances of all poses: centre of mass (m), turn since the first sample (rad), world axes. None without forces.
+    pub fn pose_covariances(&self) -> &[[[f64; 6]; 6]] {
+        match &self.made {
+            Made::Estimated(made) => &made.made.data.estimate.pose_covariances,
+            Made::WithoutForces(_) => &[],
+        }
     }
 
     /// Whether the result may be relied on, and why or why not.
@@ -250,7 +259,8 @@ impl Reconstructed {
         Ok(page)
     }
 
-    /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh` and `--mcap`.
+    /// Writes the folder that the command writes; `options` are `--force`, `--export`, `--export-shape`, `--mesh`, `--mcap` and
+    /// `--covariance`.
     ///
     /// # Errors
     /// Where it cannot be written, or does not hold.
@@ -263,6 +273,9 @@ impl Reconstructed {
                 let bag = args.mcap.then_some(self.stand);
                 let mut extras = made.extras(&args.export, args.export_shape, bag)?;
                 extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
+                if args.covariance {
+                    extras.push(made.covariances()?);
+                }
                 made.write(target, &extras)?;
             }
             Made::WithoutForces(made) => {

@@ -36,6 +36,8 @@ pub(crate) struct AnyPalmsRequest<'a> {
     pub(crate) friction: Option<f64>,
     /// How near the motion is wanted, where the least model is to be chosen by that.
     pub(crate) accuracy: Option<Accuracy>,
+    /// Whether covariances of all poses are wanted.
+    pub(crate) covariances: bool,
     /// Samples of the log that were taken as one.
     pub(crate) together: usize,
     /// Why it is this estimate, in one sentence.
@@ -48,8 +50,19 @@ pub(crate) struct AnyPalmsRequest<'a> {
 
 impl<'a> AnyPalmsRequest<'a> {
     pub(crate) fn new(scene: &'a Scene, title: &'a str, identify: bool) -> Self {
-        let (note, warnings, accuracy, friction) = Default::default();
-        Self { scene, title, identify, friction, accuracy, together: 1, note, warnings, implausible: false }
+        let (note, warnings, accuracy, friction, covariances, implausible) = Default::default();
+        Self {
+            scene,
+            title,
+            identify,
+            friction,
+            accuracy,
+            covariances,
+            together: 1,
+            note,
+            warnings,
+            implausible,
+        }
     }
 
     /// What does not go with the scene, before all other warnings.
@@ -117,6 +130,7 @@ pub(crate) fn estimate_any_palms(
 ) -> Result<AnyPalms, CliError> {
     let mut options = options(&log, request.scene, request.together)?;
     options.friction = request.friction;
+    options.pose_covariances = request.covariances;
     if !request.identify {
         options.body = request.scene.mass_properties().ok().flatten();
     }

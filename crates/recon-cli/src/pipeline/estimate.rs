@@ -17,7 +17,7 @@ use recon::least_model::Accuracy;
 use recon::object_dynamics::SensorLog;
 use recon_io::{
     FolderTarget, Implausibility, Level, Scene, TriangleMesh, implausibilities, implausible_contacts,
-    write_estimate_report,
+    write_covariances, write_estimate_report,
 };
 use serde_json::Value;
 use std::io::{self, Write};
@@ -33,6 +33,8 @@ pub(crate) struct Asked<'a> {
     pub(crate) identify: bool,
     /// How near the motion is wanted, where the least model is to be chosen by that.
     pub(crate) accuracy: Option<Accuracy>,
+    /// Whether covariances of all poses are wanted.
+    pub(crate) covariances: bool,
 }
 
 /// What a log tells, with what its files need beside it.
@@ -48,8 +50,9 @@ pub(crate) fn estimated(
     asked: &Asked<'_>,
     progress: &Progress,
 ) -> Result<Estimated, CliError> {
-    let Asked { path, scene, title, identify, accuracy } = *asked;
-    let mut request = AnyPalmsRequest { accuracy, ..AnyPalmsRequest::new(scene, title, identify) };
+    let Asked { path, scene, title, identify, accuracy, covariances } = *asked;
+    let mut request =
+        AnyPalmsRequest { accuracy, covariances, ..AnyPalmsRequest::new(scene, title, identify) };
     match log {
         LogOf::ThreePalms(log) => estimated_planes(log, asked, warnings, progress),
         LogOf::AnyPalms(log, why) => {
@@ -70,12 +73,13 @@ pub(crate) fn estimated_planes(
     warnings: Vec<String>,
     progress: &Progress,
 ) -> Result<Estimated, CliError> {
-    let Asked { scene, title, identify, accuracy, .. } = *asked;
+    let Asked { scene, title, identify, accuracy, covariances, .. } = *asked;
     if !identify {
         // What is to be estimated is asked for.
         known_body(scene)?;
     }
-    let mut request = AnyPalmsRequest { accuracy, ..AnyPalmsRequest::new(scene, title, identify) };
+    let mut request =
+        AnyPalmsRequest { accuracy, covariances, ..AnyPalmsRequest::new(scene, title, identify) };
     let odd = implausibilities(&log, scene);
     let (log, together) = condensed(log);
     let contacts = with_forces(&log, scene)?;
@@ -96,6 +100,14 @@ fn odd_first(error: CliError, odd: &[Implausibility]) -> CliError {
 }
 
 impl Estimated {
+    /// The table of the covariances of all poses, as a file.
+    pub(crate) fn covariances(&self) -> Result<Extra, CliError> {
+        let (data, mut table) = (&self.made.data, Vec::new());
+        write_covariances(data.log.times(), &data.estimate.pose_covariances, &mut table)
+            .map_err(CliError::Page)?;
+        Ok(("covariance.csv".to_owned(), table))
+    }
+
     /// Further files of its folder: the object in these formats, and where a stand is given its bag.
     pub(crate) fn extras(
         &self,

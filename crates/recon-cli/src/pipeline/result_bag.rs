@@ -18,16 +18,16 @@ pub(crate) fn bag_of_estimate(made: &AnyPalms, stand: LogStand) -> Result<(Strin
         };
         (0..data.log.times().len()).map(contact).collect()
     };
-    let poses = data.estimate.states.iter().zip(&data.estimate.deviations);
-    let pose = |(state, [position, _, _, turn]): (&recon::object_dynamics::BodyState, &[glam::DVec3; 4])| {
-        ResultPose { p_WCm: state.p_WCm, R_WO: state.R_WO, deviations: Some([*position, *turn]) }
+    let pose = |(k, state): (usize, &recon::object_dynamics::BodyState)| {
+        let covariance = data.estimate.pose_covariances.get(k).copied();
+        ResultPose { p_WCm: state.p_WCm, R_WO: state.R_WO, covariance }
     };
     let bounds = made.bounds.as_ref();
     let bag = ResultBag {
         epoch: stand.epoch,
         origin: stand.origin,
         times: data.log.times(),
-        motion: poses.map(pose).collect(),
+        motion: data.estimate.states.iter().enumerate().map(pose).collect(),
         contacts: data.log.palms().iter().map(contacts).collect(),
         curves: data.curves.iter().flatten().flatten().map(|contact| contact.p_OC).collect(),
         lower: bounds.and_then(|bounds| bounds.lower.as_ref()),

@@ -155,3 +155,31 @@ fn loss_of_contact_ends_a_simulation_and_is_said_in_a_reconstruction() {
     assert!(motion.rows[..1259].iter().all(|row| row[mode] == "1"), "it slides up to there");
     assert!(motion.rows[1259..].iter().all(|row| row[mode] == "0"), "and is off from there on");
 }
+
+/// Beside each row of motion.csv there is one of covariances: on the diagonal the squares of the deviations there.
+#[test]
+fn covariances_are_written_where_they_are_asked_for() {
+    let (scratch, _) = scratch_reconstructed("covariance", false);
+    assert!(!scratch.path().join("out/covariance.csv").exists());
+    let asked = ["reconstruct", "log.csv", "--scene", "scene.toml", "-o", "with", "--covariance"];
+    let run = scratch.run(&asked);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let table = |name: &str| {
+        let text = scratch.read(&format!("with/{name}"));
+        let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        (lines.next().unwrap(), lines.collect::<Vec<_>>())
+    };
+    let ((names, rows), (of, motion)) = (table("covariance.csv"), table("motion.csv"));
+    assert_eq!((names.len(), rows.len()), (22, motion.len()));
+    let number = |(names, row): (&Vec<String>, &Vec<String>), name: &str| -> f64 {
+        row[names.iter().position(|of| of == name).unwrap()].parse().unwrap()
+    };
+    for (row, motion) in rows.iter().zip(&motion) {
+        for axis in ["cmx", "cmy", "cmz", "turnx", "turny", "turnz"] {
+            let variance = number((&names, row), &format!("cov_{axis}_{axis}"));
+            let std = number((&of, motion), &format!("std_{axis}"));
+            assert!((variance - std * std).abs() <= 1e-9 * variance, "{axis} {variance} {std}");
+        }
+    }
+    assert_eq!(scratch.run(&["check", "with"]).code, Some(0));
+}

@@ -200,7 +200,14 @@ fn made(args: &BatchArgs, log: &Path, folder: &Path, begun: Instant) -> Result<R
     let mapping = args.mapping.as_deref().filter(|_| is_bag(log));
     let loaded = load(LogSource { path: log, scene: &scene, mapping })?;
     let [title, _] = names(log);
-    let asked = Asked { path: log, scene: &scene, title: &title, identify: args.identify, accuracy: None };
+    let asked = Asked {
+        path: log,
+        scene: &scene,
+        title: &title,
+        identify: args.identify,
+        accuracy: None,
+        covariances: false,
+    };
     let estimate = estimated(sorted_with_forces(loaded, &scene), &asked, &Progress::watched(None))?;
     let relied_on = estimate.is_reliable();
     let data = &estimate.made.data;

@@ -40,7 +40,7 @@ const MODE_ODDS: Column = may(
     "how probable it is that palm i slides and that it sticks; off is what is left to 1",
 );
 
-pub(super) const FORMATS: [Format; 23] = [
+pub(super) const FORMATS: [Format; 24] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -353,6 +353,18 @@ pub(super) const FORMATS: [Format; 23] = [
                 "outline.waves",
                 "m, 1, -",
                 "or r = size (1 + depth cos(count angle)): { size, depth, count }",
+            ),
+        ],
+    },
+    Format {
+        name: "covariance",
+        about: "covariance.csv of recon reconstruct --covariance: beside each row of motion.csv the covariance of the pose, on and above the diagonal",
+        columns: &[
+            needed("t", "s", "time"),
+            needed(
+                "cov_cmx_cmx, cov_cmx_cmy .. cov_turnz_turnz",
+                "m^2, m rad, rad^2",
+                "of centre of mass and turn since the first sample, world axes",
             ),
         ],
     },

@@ -121,16 +121,12 @@ pub(super) fn transform(header: Header, child: &str, (position, turn): (DVec3, D
 pub(super) fn pose_with_covariance(
     header: Header,
     place: (DVec3, DQuat),
-    deviations: Option<[DVec3; 2]>,
+    covariance: Option<[[f64; 6]; 6]>,
 ) -> Vec<u8> {
     let mut to = CdrWriter::new();
     put_header(&mut to, header);
     put_pose(&mut to, place);
-    let mut covariance = [0.0; 36];
-    for (k, deviation) in deviations.iter().flatten().flat_map(DVec3::to_array).enumerate() {
-        covariance[7 * k] = deviation * deviation;
-    }
-    to.f64s(&covariance);
+    to.f64s(covariance.unwrap_or_default().as_flattened());
     to.into_bytes()
 }
 

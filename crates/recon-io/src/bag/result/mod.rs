@@ -50,8 +50,8 @@ pub struct ResultPose {
     pub p_WCm: DVec3,
     /// Orientation, body to world.
     pub R_WO: DQuat,
-    /// Standard deviations of position (m) and turn (rad), world axes, where they are known; a covariance of zeros says that they are not.
-    pub deviations: Option<[DVec3; 2]>,
+    /// Covariance of position (m) and turn (rad), world axes, where it is known; one of zeros says that it is not.
+    pub covariance: Option<[[f64; 6]; 6]>,
 }
 
 /// Where a palm touches the object, and how it pushes.
@@ -130,7 +130,7 @@ impl ResultBag<'_> {
         let header = Header { time, frame: "world" };
         let place = (self.origin + pose.p_WCm, pose.R_WO);
         bag.write("/tf", Definition::TFMessage, time, &encode::transform(header, OBJECT, place))?;
-        let message = encode::pose_with_covariance(header, place, pose.deviations);
+        let message = encode::pose_with_covariance(header, place, pose.covariance);
         bag.write("/recon/pose", Definition::PoseWithCovarianceStamped, time, &message)
     }
 

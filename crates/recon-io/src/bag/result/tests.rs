@@ -13,7 +13,7 @@ fn result<'a>(times: &'a [f64], mesh: &'a TriangleMesh) -> ResultBag<'a> {
     let pose = |t: &f64| ResultPose {
         p_WCm: DVec3::new(*t, 0.0, 1.0),
         R_WO: DQuat::from_rotation_x(*t),
-        deviations: Some([DVec3::splat(0.1), DVec3::splat(0.2)]),
+        covariance: Some([[0.01; 6]; 6]),
     };
     let contact = |t: &f64| {
         (*t < 0.5).then_some(ResultContact { p_WC: DVec3::new(*t, 0.0, 0.0), force: Some(2.0 * DVec3::Z) })
@@ -119,17 +119,16 @@ fn markers_are_laid_out_as_defined() {
 }
 
 #[test]
-fn variances_stand_on_the_diagonal() {
+fn the_covariance_stands_row_by_row() {
     let header = Header { time: 0, frame: "world" };
-    let deviations = Some([DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)]);
-    let bytes = pose_with_covariance(header, (DVec3::ZERO, DQuat::IDENTITY), deviations);
+    let whole = std::array::from_fn(|i| std::array::from_fn(|k| (10 * i + k) as f64));
+    let bytes = pose_with_covariance(header, (DVec3::ZERO, DQuat::IDENTITY), Some(whole));
     let mut from = Cdr::new(&bytes).unwrap();
     assert!(from.i32("s").is_ok() && from.u32("ns").is_ok() && from.text("frame").is_ok());
     assert!(from.f64s::<7>("pose").is_ok());
     let covariance: [f64; 36] = from.f64s("covariance").unwrap();
     for (k, value) in covariance.into_iter().enumerate() {
-        let expected = if k % 7 == 0 { ((k / 7 + 1) as f64).powi(2) } else { 0.0 };
-        assert_eq!(value, expected);
+        assert_eq!(value, (10 * (k / 6) + k % 6) as f64);
     }
     assert_eq!(from.end(), Ok(()));
 }

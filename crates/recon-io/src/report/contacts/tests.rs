@@ -183,6 +183,7 @@ fn estimate() -> EstimateData {
     };
     let estimate = ContactEstimate {
         pose_errors: None,
+        pose_covariances: Vec::new(),
         misread: Vec::new(),
         suspects: Vec::new(),
         explanations: Vec::new(),
