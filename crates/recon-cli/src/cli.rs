@@ -686,6 +686,7 @@ Exit code 4 says that something does not go together.
 Examples:
   recon check-input log.csv --scene scene.toml
   recon check-input contacts.csv
+  recon check-input log.csv --scene scene.toml --report page.html
   recon check-input log.csv --scene scene.toml --json | jq .gaps")]
 pub(crate) struct CheckInputArgs {
     /// Sensor log (CSV, or a bag of ROS 2 in MCAP), contacts or poses (CSV)
@@ -696,6 +697,9 @@ pub(crate) struct CheckInputArgs {
     /// Mapping of a bag's topics (TOML)
     #[arg(short, long)]
     pub(crate) mapping: Option<PathBuf>,
+    /// Write what is told, with pictures of the readings, as a page too (HTML)
+    #[arg(long, value_name = "PAGE")]
+    pub(crate) report: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]

@@ -1,13 +1,18 @@
 //! `recon check-input`: what is understood of an input, before anything is estimated.
 
 mod log;
+mod page;
 mod touches;
 
+use super::simulate::write as write_file;
 use crate::cli::CheckInputArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{LogSource, PlanarSource, load, read_planar};
-use recon_io::{PlanarScene, Scene, SceneErrorKind, TouchesError, TouchesErrorKind, is_bag, read_touches};
+use recon_io::{
+    FigurePanel, FileTarget, PlanarScene, Scene, SceneErrorKind, TouchesError, TouchesErrorKind, is_bag,
+    read_touches, write_figures_page,
+};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -16,10 +21,22 @@ struct Understood {
     lines: Vec<(String, String)>,
     figures: Value,
     warnings: Vec<String>,
+    /// What there is to see of it.
+    panels: Vec<FigurePanel>,
+    of_a_log: bool,
 }
 
 pub(crate) fn run(args: &CheckInputArgs, console: &Console) -> Result<Outcome, CliError> {
-    let Understood { lines, mut figures, warnings } = understood(args)?;
+    let inputs: Vec<_> =
+        std::iter::once(&args.input).chain(&args.scene).chain(&args.mapping).cloned().collect();
+    let target = args.report.as_ref().map(|path| FileTarget::new(path, &inputs)).transpose()?;
+    let understood = understood(args)?;
+    let title = args.input.file_name().unwrap_or(args.input.as_os_str()).to_string_lossy().into_owned();
+    if let (Some(target), Some(path)) = (target, &args.report) {
+        let page = page::page(title, &understood);
+        write_file(target, path, |to| write_figures_page(&page, to))?;
+    }
+    let Understood { lines, mut figures, warnings, .. } = understood;
     let mut text = format!("{}\n", args.input.display());
     for (name, value) in &lines {
         let _ = writeln!(text, "  {name:<22} {value}");

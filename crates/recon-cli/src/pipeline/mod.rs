@@ -70,5 +70,6 @@ pub(crate) use read::{
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use smooth::smooth_surface;
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
+pub(crate) use views::views;
 pub(crate) use without_forces::{WithoutForces, without_forces};
 pub(crate) use without_forces_page::without_forces_page;

@@ -286,3 +286,28 @@ fn bounds_are_written_as_stl_and_gltf_too() {
     let plane = scratch.run(&["bounds", "plane.csv", "--mesh", "stl", "-o", "plane"]);
     assert!(plane.code == Some(2) && plane.stderr.contains("--mesh"), "{}", plane.stderr);
 }
+
+/// The page that is written of what is told has the same words, and pictures of the readings.
+#[test]
+fn what_is_told_of_an_input_is_a_page_too() {
+    let scratch = Scratch::new("check-input-page");
+    assert_eq!(scratch.run(&["init", "start"]).code, Some(0));
+    let log = ["check-input", "start/log.csv", "--scene", "start/scene.toml", "--report", "log.html"];
+    let run = scratch.run(&log);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let page = scratch.read("log.html");
+    for says in [
+        "Time from sample to sample",
+        "Contacts from their mean",
+        "noise of forces",
+        "Nothing speaks against",
+    ] {
+        assert!(page.contains(says), "{says}");
+    }
+    assert!(!page.contains("src="));
+    let contacts = ["check-input", "start/contacts.csv", "--report", "contacts.html"];
+    assert_eq!(scratch.run(&contacts).code, Some(0));
+    assert!(scratch.read("contacts.html").contains("Seen from above"));
+    let onto_itself = ["check-input", "start/contacts.csv", "--report", "start/contacts.csv"];
+    assert_eq!(scratch.run(&onto_itself).code, Some(5), "an input is not written over");
+}

@@ -1,6 +1,7 @@
 //! What is understood of contacts or poses.
 
 use super::Understood;
+use super::page::of_touches;
 use recon_io::{Touches, brief, brief_to};
 use serde_json::json;
 
@@ -75,7 +76,7 @@ pub(super) fn told(found: &Touches) -> Understood {
     let figures = json!({
         "kind": kind, "frames": frames, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
     });
-    Understood { lines, figures, warnings }
+    Understood { lines, figures, warnings, panels: of_touches(found), of_a_log: false }
 }
 
 /// Extent of points along each axis.
