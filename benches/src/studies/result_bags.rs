@@ -127,14 +127,14 @@ fn bag<'a>(
     size: f64,
     times: &'a [f64],
     mesh: &'a TriangleMesh,
-    with_deviations: bool,
+    with_covariance: bool,
 ) -> ResultBag<'a> {
     let mut motion = Vec::new();
     let mut contacts = vec![Vec::new(); PALMS];
     for _ in times {
         let (p_WCm, R_WO) = (size * source.normal3(), source.rotation());
-        let deviations = [size * source.normal3().abs(), source.normal3().abs()];
-        motion.push(ResultPose { p_WCm, R_WO, deviations: with_deviations.then_some(deviations) });
+        let covariance = std::array::from_fn(|_| std::array::from_fn(|_| size * source.normal()));
+        motion.push(ResultPose { p_WCm, R_WO, covariance: with_covariance.then_some(covariance) });
         for palm in &mut contacts {
             let contact = ResultContact { p_WC: size * source.normal3(), force: Some(source.normal3()) };
             palm.push((source.unit() < 0.8).then_some(contact));
@@ -156,14 +156,7 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
         let pose = &bag.motion[k];
         numbers([(bag.origin + pose.p_WCm).to_array().as_slice(), &pose.R_WO.to_array()].concat())
     };
-    let covariance = |k: usize| {
-        let deviations = bag.motion[k].deviations.unwrap_or_default();
-        let mut entries = vec![0.0; 36];
-        for (k, deviation) in deviations.iter().flat_map(DVec3::to_array).enumerate() {
-            entries[7 * k] = deviation * deviation;
-        }
-        numbers(entries)
-    };
+    let covariance = |k: usize| numbers(bag.motion[k].covariance.unwrap_or_default().as_flattened().to_vec());
     let touched =
         |k: usize| points((0..PALMS).filter_map(|palm| Some(bag.origin + bag.contacts[palm][k]?.p_WC)));
     let touch = |palm: usize, k: usize| {
