@@ -7,7 +7,7 @@ use super::plane;
 use super::problem::{Problem, Unknowns};
 use super::record::Record;
 use super::solve::Covariances;
-use super::state::{MOTION, Motion, Tangent};
+use super::state::{MOTION, Motion, Tangent, Turn};
 use crate::rigid::exponential;
 use glam::{DMat3, DVec3};
 use nalgebra::{Matrix3, Matrix6, SMatrix};
@@ -25,15 +25,13 @@ pub(super) fn at_all<const P: usize>(
     let own = problem.at_samples(found);
     let known: Vec<Deviations> =
         (0..own.len()).map(|j| deviations(&own[j], &found.body, j, covariances)).collect();
-    let nodes = problem.node_samples();
-    let mut all = Vec::with_capacity(log.times.len());
-    for j in 0..own.len() {
-        all.push((own[j], known[j]));
-        if let Some(&end) = nodes.get(j + 1) {
-            let link = Link::new(log, problem, &found.body, (j, [own[j], own[j + 1]]), nodes[j]..end);
-            all.extend((nodes[j] + 1..end).map(|k| link.at(log, k, [&known[j], &known[j + 1]])));
-        }
-    }
+    let mut all = along_links(
+        log,
+        problem,
+        (&own, &found.body),
+        |j| (own[j], known[j]),
+        |link, j, k| link.at(log, k, [&known[j], &known[j + 1]]),
+    );
     if problem.planar {
         all.iter_mut().for_each(|(_, deviations)| plane::flatten(deviations, log.across));
     }
@@ -54,17 +52,35 @@ pub(super) fn poses_at_all<const P: usize>(
         Matrix6::from_fn(|i, k| all[(POSE[i], POSE[k])])
     };
     let known: Vec<Matrix6<f64>> = (0..own.len()).map(of).collect();
+    let all = along_links(
+        log,
+        problem,
+        (&own, &found.body),
+        |j| known[j],
+        |link, j, k| link.pose(log, k, [&known[j], &known[j + 1]]),
+    );
+    // But for rounding they are symmetric.
+    all.iter().map(|of| 0.5 * (of + of.transpose())).collect()
+}
+
+/// Something at each sample of `log`, whose nodes have the motions `own`: at node `j`, and of the link after node `j` at the sample `k` inside.
+fn along_links<T>(
+    log: &Record,
+    problem: &Problem,
+    (own, body): (&[Motion], &Body),
+    at_node: impl Fn(usize) -> T,
+    inside: impl Fn(&Link, usize, usize) -> T,
+) -> Vec<T> {
     let nodes = problem.node_samples();
     let mut all = Vec::with_capacity(log.times.len());
     for j in 0..own.len() {
-        all.push(known[j]);
+        all.push(at_node(j));
         if let Some(&end) = nodes.get(j + 1) {
-            let link = Link::new(log, problem, &found.body, (j, [own[j], own[j + 1]]), nodes[j]..end);
-            all.extend((nodes[j] + 1..end).map(|k| link.pose(log, k, [&known[j], &known[j + 1]])));
+            let link = Link::new(log, problem, body, (j, [own[j], own[j + 1]]), nodes[j]..end);
+            all.extend((nodes[j] + 1..end).map(|k| inside(&link, j, k)));
         }
     }
-    // But for rounding they are symmetric.
-    all.iter().map(|of| 0.5 * (of + of.transpose())).collect()
+    all
 }
 
 /// Samples from one node to the next.
@@ -114,7 +130,7 @@ impl<'a> Link<'a> {
     /// a Brownian bridge (how far the motion came tells hardly more of them, as that is not known better), places that of an integrated one.
     fn at(&self, log: &Record, k: usize, ends: [&Deviations; 2]) -> (Motion, Deviations) {
         let h = self.duration;
-        let (s, _) = self.place(log, k);
+        let (s, before, turn) = self.place(log, k);
         let part = |of: &Tangent, i: usize| DVec3::new(of[i], of[i + 1], of[i + 2]);
         let (left, bent) = (&self.left, &self.bent);
         // Of a cubic that ends with a value and a slope; and the slope of that which noise bent, over the duration.
@@ -123,8 +139,6 @@ impl<'a> Link<'a> {
             let rate = bent * (6.0 * s * (1.0 - s) / h) + slope * (s * (3.0 * s - 2.0));
             (at, rate)
         };
-        let before = &self.carried[k - self.samples.start - 1];
-        let turn = self.body.turn(before.q, before.L);
         let inertia = self.body.inertia_along(turn.R);
         let (p, v) = cubic(part(left, 0), part(bent, 0), part(left, 3));
         let (turned, spin) = cubic(part(left, 9), part(bent, 9), turn.K * part(left, 6));
@@ -137,20 +151,24 @@ impl<'a> Link<'a> {
         (motion, self.deviations(s, turn.K, ends))
     }
 
-    /// Share of the link that is behind a sample inside, and the inverse inertia there.
-    fn place(&self, log: &Record, k: usize) -> (f64, DMat3) {
+    /// Share of the link that is behind a sample inside, and the motion by what was measured until then.
+    fn place(&self, log: &Record, k: usize) -> (f64, &Motion, Turn) {
         let s = (log.times[k] - log.times[self.samples.start]) / self.duration;
         let before = &self.carried[k - self.samples.start - 1];
-        (s, self.body.turn(before.q, before.L).K)
+        (s, before, self.body.turn(before.q, before.L))
+    }
+
+    /// What of the link's noise is in a place inside, s^2.
+    fn share_in_places(&self, s: f64) -> f64 {
+        (s * (1.0 - s)).powi(3) * self.duration * self.duration / 3.0
     }
 
     /// Covariance of the pose at a sample inside, by the same bridges.
     fn pose(&self, log: &Record, k: usize, ends: [&Matrix6<f64>; 2]) -> Matrix6<f64> {
-        let (s, K) = self.place(log, k);
+        let (s, _, turn) = self.place(log, k);
         let mut to = Matrix6::from_diagonal_element(self.body.inverse_mass());
-        to.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from(K));
-        let share = (s * (1.0 - s)).powi(3) * self.duration * self.duration / 3.0;
-        ends[0] * (1.0 - s) + ends[1] * s + to * self.noise * to.transpose() * share
+        to.fixed_view_mut::<3, 3>(3, 3).copy_from(&Matrix3::from(turn.K));
+        ends[0] * (1.0 - s) + ends[1] * s + to * self.noise * to.transpose() * self.share_in_places(s)
     }
 
     fn deviations(&self, s: f64, K: DMat3, ends: [&Deviations; 2]) -> Deviations {
@@ -159,9 +177,7 @@ impl<'a> Link<'a> {
         let K = Matrix3::from(K);
         let noise = [part(0) * (m * m), K * part(3) * K.transpose()]
             .map(|of| DVec3::new(of[(0, 0)], of[(1, 1)], of[(2, 2)]));
-        let bend = s * (1.0 - s);
-        let rate = bend;
-        let place = bend.powi(3) * self.duration * self.duration / 3.0;
+        let (rate, place) = (s * (1.0 - s), self.share_in_places(s));
         let shares = [(noise[0], place), (noise[0], rate), (noise[1], rate), (noise[1], place)];
         std::array::from_fn(|i| {
             let (noise, share) = shares[i];

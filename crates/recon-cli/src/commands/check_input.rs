@@ -9,8 +9,9 @@ use crate::cli::CheckInputArgs;
 use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{LogSource, PlanarSource, load, read_planar};
+use recon::object_dynamics::ContactLog;
 use recon_io::{
-    FigurePanel, FileTarget, PlanarScene, Scene, SceneErrorKind, TouchesError, TouchesErrorKind, is_bag,
+    FileTarget, PlanarScene, Scene, SceneErrorKind, Touches, TouchesError, TouchesErrorKind, is_bag,
     read_touches, write_figures_page,
 };
 use serde_json::Value;
@@ -21,9 +22,14 @@ struct Understood {
     lines: Vec<(String, String)>,
     figures: Value,
     warnings: Vec<String>,
-    /// What there is to see of it.
-    panels: Vec<FigurePanel>,
-    of_a_log: bool,
+    readings: Readings,
+}
+
+/// What was read, for pictures.
+enum Readings {
+    /// With the times between which samples are missing, s.
+    Log(Box<ContactLog>, Vec<[f64; 2]>),
+    Touches(Touches),
 }
 
 pub(crate) fn run(args: &CheckInputArgs, console: &Console) -> Result<Outcome, CliError> {
@@ -53,7 +59,7 @@ pub(crate) fn run(args: &CheckInputArgs, console: &Console) -> Result<Outcome, C
 fn understood(args: &CheckInputArgs) -> Result<Understood, CliError> {
     if args.scene.is_none() && !is_bag(&args.input) {
         match read_touches(&args.input) {
-            Ok(found) => return Ok(touches::told(&found)),
+            Ok(found) => return Ok(touches::told(found)),
             // A header of something else: a log, which needs a scene.
             Err(TouchesError { kind: TouchesErrorKind::MissingColumn { .. }, .. }) => {}
             Err(error) => return Err(error.into()),

@@ -1,6 +1,6 @@
 //! An outline that need not be convex, from a scene to what is known of it.
 
-use crate::common::Scratch;
+use crate::common::{Scratch, json, number};
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -18,16 +18,6 @@ fn scratch(name: &str) -> Scratch {
     let bean = "[outline]\npoints = [[0.05, 0.0], [0.03, 0.04], [0.0, 0.01], [-0.03, 0.04], [-0.05, 0.0], [0.0, -0.04]]\n";
     scratch.write("bean.toml", bean);
     scratch
-}
-
-fn json(scratch: &Scratch, arguments: &[&str], code: i32) -> Value {
-    let run = scratch.run(arguments);
-    assert_eq!(run.code, Some(code), "{arguments:?} {}{}", run.stdout, run.stderr);
-    serde_json::from_str(&run.stdout).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 /// The support function of the waves at 0 is their farthest point; the hull is larger than they are.

@@ -1,6 +1,6 @@
 //! Where to touch next, from a scene to a proof.
 
-use crate::common::Scratch;
+use crate::common::{Scratch, json};
 use recon_tests::few_or_all;
 use serde_json::Value;
 
@@ -28,12 +28,6 @@ fn scratch(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     scratch.write("space.toml", SPACE).write("plane.toml", PLANE);
     scratch
-}
-
-fn json(scratch: &Scratch, arguments: &[&str], code: i32) -> Value {
-    let run = scratch.run(arguments);
-    assert_eq!(run.code, Some(code), "{arguments:?} {}{}", run.stdout, run.stderr);
-    serde_json::from_str(&run.stdout).unwrap()
 }
 
 #[test]

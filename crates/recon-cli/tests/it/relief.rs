@@ -1,7 +1,6 @@
 //! A body in space that need not be convex, from a scene to what is known of it.
 
-use crate::common::Scratch;
-use serde_json::Value;
+use crate::common::{Scratch, json, number};
 
 /// `r = 0.05 (1 + 0.3 cos 2 theta)`: a groove once round whose least radius of curvature is `r^2 / (r'' - r)` at `r = 0.035`, `r'' = 0.06`.
 const GROOVE: f64 = 0.035 * 0.035 / (0.06 - 0.035);
@@ -11,16 +10,6 @@ fn scratch(name: &str) -> Scratch {
     let body = "[finger]\nradius = 0.02\n[surface]\nsize = 0.05\nwaves = [{ axis = [0, 0, 2], depth = 0.3, count = 2 }]\n";
     scratch.write("body.toml", body);
     scratch
-}
-
-fn json(scratch: &Scratch, arguments: &[&str], code: i32) -> Value {
-    let run = scratch.run(arguments);
-    assert_eq!(run.code, Some(code), "{arguments:?} {}{}", run.stdout, run.stderr);
-    serde_json::from_str(&run.stdout).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 /// Volume of the body, by the cube of its radius over the cosine of the angle.

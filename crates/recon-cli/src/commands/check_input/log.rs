@@ -1,7 +1,6 @@
 //! What is understood of a sensor log.
 
-use super::Understood;
-use super::page::of_log;
+use super::{Readings, Understood};
 use crate::error::CliError;
 use crate::pipeline::{LoadedLog, LogOf, sorted_with_forces, with_palms};
 use glam::DVec3;
@@ -143,8 +142,8 @@ impl Read {
             "rate_hz": rate, "gaps": gaps, "truth": truth, "palms": palms, "noise": rough,
             "estimated_as": self.estimated_as,
         });
-        let panels = of_log(&contacts, &gaps);
-        Understood { lines, figures, warnings, panels, of_a_log: true }
+        let readings = Readings::Log(Box::new(contacts), gaps);
+        Understood { lines, figures, warnings, readings }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is understood of an input, as a page to look at.
 
-use super::Understood;
+use super::{Readings, Understood};
 use crate::pipeline::views;
 use glam::DVec3;
 use recon::object_dynamics::{ContactLog, LoggedPalm};
@@ -13,7 +13,11 @@ const OF_TOUCHES: &str = "Where the object was touched, or where it lay.";
 const POINTS: usize = 2000;
 
 pub(super) fn page(title: String, understood: &Understood) -> FiguresPage {
-    let Understood { lines, warnings, panels, of_a_log, .. } = understood;
+    let Understood { lines, warnings, readings, .. } = understood;
+    let (heading, panels, caption) = match readings {
+        Readings::Log(log, gaps) => ("The readings", of_log(log, gaps), OF_A_LOG),
+        Readings::Touches(found) => ("The points", of_touches(found), OF_TOUCHES),
+    };
     let (level, text) = match warnings.len() {
         0 => (
             Level::Good,
@@ -36,15 +40,15 @@ pub(super) fn page(title: String, understood: &Understood) -> FiguresPage {
         verdict: Verdict { level, text },
         warnings: warnings.clone(),
         facts: Vec::new(),
-        heading: if *of_a_log { "The readings" } else { "The points" },
-        panels: panels.clone(),
-        caption: if *of_a_log { OF_A_LOG } else { OF_TOUCHES }.to_owned(),
+        heading,
+        panels,
+        caption: caption.to_owned(),
         evidence: lines.iter().map(row).collect(),
     }
 }
 
 /// The readings of a log over time.
-pub(super) fn of_log(log: &ContactLog, gaps: &[[f64; 2]]) -> Vec<FigurePanel> {
+fn of_log(log: &ContactLog, gaps: &[[f64; 2]]) -> Vec<FigurePanel> {
     let times = log.times();
     let every = times.len().div_ceil(POINTS).max(1);
     let shown: Vec<usize> = (0..times.len()).step_by(every).collect();
@@ -93,7 +97,7 @@ pub(super) fn of_log(log: &ContactLog, gaps: &[[f64; 2]]) -> Vec<FigurePanel> {
 }
 
 /// Contacts or places as they are seen.
-pub(super) fn of_touches(found: &Touches) -> Vec<FigurePanel> {
+fn of_touches(found: &Touches) -> Vec<FigurePanel> {
     match found {
         Touches::PlanarContacts { curves, .. } => {
             let points = curves.iter().flatten().map(|contact| contact.point.to_array()).collect();

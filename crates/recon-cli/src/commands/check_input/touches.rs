@@ -1,7 +1,6 @@
 //! What is understood of contacts or poses.
 
-use super::Understood;
-use super::page::of_touches;
+use super::{Readings, Understood};
 use recon_io::{Touches, brief, brief_to};
 use serde_json::json;
 
@@ -11,8 +10,8 @@ const EXACT_NORMALS: f64 = 1e-5;
 const OF_THE_OBJECT: &str = "any one that is fixed to the object; normals point out of it";
 const ABOVE_A_PLANE: &str = "body to world, z up, as unit quaternions and places of the body's origin";
 
-pub(super) fn told(found: &Touches) -> Understood {
-    let (kind, frames, lengths, rounding, span) = match found {
+pub(super) fn told(found: Touches) -> Understood {
+    let (kind, frames, lengths, rounding, span) = match &found {
         Touches::Contacts { curves, rounding } => {
             let points = curves.iter().flatten().map(|contact| contact.point.to_array().to_vec());
             (
@@ -76,7 +75,7 @@ pub(super) fn told(found: &Touches) -> Understood {
     let figures = json!({
         "kind": kind, "frames": frames, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
     });
-    Understood { lines, figures, warnings, panels: of_touches(found), of_a_log: false }
+    Understood { lines, figures, warnings, readings: Readings::Touches(found) }
 }
 
 /// Extent of points along each axis.

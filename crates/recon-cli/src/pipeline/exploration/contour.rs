@@ -1,6 +1,7 @@
 //! Outlines that a round finger follows once round.
 
-use super::settings::CONFIDENCE;
+use super::finger::{but, places, sure};
+use super::settings::{Noise, add_noise, noise_of};
 use super::story::Explored;
 use crate::cli::GoalArgs;
 use crate::error::{CliError, Outcome as Exit};
@@ -20,8 +21,7 @@ use std::fmt::Write;
 pub(crate) struct Following {
     pub(crate) tracing: Tracing,
     pub(crate) margins: Margins,
-    /// Standard deviations of points (m) and normals (rad) and the confidence; none of exact touches.
-    pub(crate) noise: Option<([f64; 2], f64)>,
+    pub(crate) noise: Noise,
     pub(crate) seed: u64,
 }
 
@@ -46,8 +46,7 @@ impl Following {
         // The path of the finger bulges by step^2 / (8 radius) at most.
         let step = step.unwrap_or_else(|| (size / STEPS).min((8.0 * BULGE * radius * size).sqrt()));
         let readings = args.budget.unwrap_or(READINGS) as usize;
-        let noise = args.contact_noise.zip(args.normal_noise);
-        let noise = noise.map(|(point, normal)| ([point, normal], args.confidence.unwrap_or(CONFIDENCE)));
+        let noise = noise_of(args);
         let margins = match noise {
             Some((deviations, level)) => Margins::of_noise(deviations, level, readings)?,
             None => Margins::EXACT,
@@ -68,11 +67,7 @@ impl Following {
             "budget": readings,
             "seed": self.seed,
         });
-        if let Some(([point, normal], confidence)) = self.noise {
-            figures["contact_noise_m"] = point.into();
-            figures["normal_noise_rad"] = normal.into();
-            figures["confidence"] = confidence.into();
-        }
+        add_noise(self.noise, &mut figures);
         figures
     }
 }
@@ -222,16 +217,10 @@ fn statement(known: &Known, following: &Following) -> (String, Exit) {
         return (format!("After {} touches {why}.", traced.readings), Exit::WithReservations);
     }
     let [lower, upper] = known.areas();
-    let sure = following.noise.map_or_else(
-        || "for exact touches".to_owned(),
-        |(_, level)| format!("at {} % confidence", 100.0 * level),
-    );
+    let sure = sure(following.noise);
     let hull = format!("The hull has an area of {} to {} m^2 {sure}", brief_to(4, lower), brief_to(4, upper));
     let unseen = following.tracing.unseen(traced.radius);
-    let but = format!(
-        "what is narrower than {} m could have been jumped over without a trace",
-        brief_to(2, unseen)
-    );
+    let but = but(unseen);
     if traced.bridges.is_empty() && unseen > known.size() {
         return (format!("{hull}; nothing is said of hollows: {but}."), Exit::WithReservations);
     }
@@ -245,9 +234,9 @@ fn statement(known: &Known, following: &Following) -> (String, Exit) {
         (0, None) => format!("the finger felt its way without a jump and found no hollow; {but}"),
         (jumps, _) => {
             let widest = traced.bridges.iter().map(|b| b.mouth).fold(0.0, f64::max);
-            let places = if jumps == 1 { "one place".to_owned() } else { format!("{jumps} places") };
             format!(
-                "the finger jumped at {places} that it does not get into, {} m wide at most: what is between was not felt; {but}",
+                "the finger jumped at {} that it does not get into, {} m wide at most: what is between was not felt; {but}",
+                places(jumps),
                 brief_to(3, widest)
             )
         }

@@ -2,6 +2,7 @@
 
 mod contour;
 mod contour_page;
+mod finger;
 mod groups;
 mod motions;
 mod page;

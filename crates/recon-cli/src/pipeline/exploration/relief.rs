@@ -1,9 +1,10 @@
 //! Bodies in space that a round finger comes down on.
 
+use super::finger::{but, places, sure};
 use super::groups::groups;
 use super::relief_files::files;
 use super::relief_page::page;
-use super::settings::CONFIDENCE;
+use super::settings::{Noise, add_noise, noise_of};
 use super::side::Drawn;
 use super::story::Explored;
 use crate::cli::GoalArgs;
@@ -23,8 +24,7 @@ use serde_json::{Value, json};
 /// How a finger comes down on a body.
 pub(crate) struct Descending {
     pub(crate) probing: Probing,
-    /// Standard deviations of points (m) and normals (rad) and the confidence; none of exact touches.
-    pub(crate) noise: Option<([f64; 2], f64)>,
+    pub(crate) noise: Noise,
     seed: u64,
 }
 
@@ -53,8 +53,7 @@ impl Descending {
     ) -> Result<Self, CliError> {
         let spacing = step.unwrap_or_else(|| (SPACING * scene.surface.size).min(NARROW * radius));
         let readings = args.budget.unwrap_or(READINGS) as usize;
-        let noise = args.contact_noise.zip(args.normal_noise);
-        let noise = noise.map(|(point, normal)| ([point, normal], args.confidence.unwrap_or(CONFIDENCE)));
+        let noise = noise_of(args);
         let margins = match noise {
             Some((deviations, level)) => Margins::of_noise_in_space(deviations, level, readings)?,
             None => Margins::EXACT,
@@ -77,11 +76,7 @@ impl Descending {
             "budget": readings,
             "seed": self.seed,
         });
-        if let Some(([point, normal], confidence)) = self.noise {
-            figures["contact_noise_m"] = point.into();
-            figures["normal_noise_rad"] = normal.into();
-            figures["confidence"] = confidence.into();
-        }
+        add_noise(self.noise, &mut figures);
         figures
     }
 }
@@ -246,16 +241,10 @@ fn statement(known: &Known, descending: &Descending) -> (String, Exit) {
     let Some(volume) = known.volume else {
         return (format!("None of {} lines met the body.", relief.readings), Exit::WithReservations);
     };
-    let sure = descending.noise.map_or_else(
-        || "for exact touches".to_owned(),
-        |(_, level)| format!("at {} % confidence", 100.0 * level),
-    );
+    let sure = sure(descending.noise);
     let size = format!("The body has a volume of {} m^3 at most {sure}", brief_to(4, volume));
     let unseen = descending.probing.unseen(relief.radius);
-    let but = format!(
-        "what is narrower than {} m could have been jumped over without a trace",
-        brief_to(2, unseen)
-    );
+    let but = but(unseen);
     if relief.end != ReliefEnd::Done {
         let why = "the lines that were allowed for are used up, and what is beyond them nobody felt";
         return (format!("{size}; {why}."), Exit::WithReservations);
@@ -263,15 +252,15 @@ fn statement(known: &Known, descending: &Descending) -> (String, Exit) {
     let mut told = Vec::new();
     if !known.places.is_empty() {
         let widest = known.places.iter().map(|(b, _)| b.mouth).fold(0.0, f64::max);
-        let (places, of) = places(known.places.len());
+        let of = if known.places.len() == 1 { "" } else { " at most" };
         told.push(format!(
-            "the finger jumped at {places} that it does not get into, {} m wide from line to line{of}: what is between was not felt",
+            "the finger jumped at {} that it does not get into, {} m wide from line to line{of}: what is between was not felt",
+            places(known.places.len()),
             brief_to(3, widest)
         ));
     }
     if known.rims > 0 {
-        let (places, _) = places(known.rims);
-        told.push(format!("at {places} no direction sees how the surface goes on"));
+        told.push(format!("at {} no direction sees how the surface goes on", places(known.rims)));
     }
     if told.is_empty() {
         told.push(match relief.least_hollow {
@@ -284,10 +273,6 @@ fn statement(known: &Known, descending: &Descending) -> (String, Exit) {
     }
     let exit = if relief.is_felt() { Exit::Done } else { Exit::WithReservations };
     (format!("{size}; {}; {but}.", told.join("; ")), exit)
-}
-
-fn places(count: usize) -> (String, &'static str) {
-    if count == 1 { ("one place".to_owned(), "") } else { (format!("{count} places"), " at most") }
 }
 
 fn drawn(known: &Known) -> Result<Drawn, CliError> {

@@ -11,14 +11,31 @@ pub(crate) const CONFIDENCE: f64 = 0.95;
 /// Touches at most in the plane and in space: some four times what ten and twenty per cent take.
 const BUDGETS: [u32; 2] = [60, 200];
 
+/// Standard deviations of points (m) and normals (rad), and the confidence; none of exact contacts.
+pub(crate) type Noise = Option<([f64; 2], f64)>;
+
+/// As the command line has it.
+pub(super) fn noise_of(args: &GoalArgs) -> Noise {
+    let noise = args.contact_noise.zip(args.normal_noise);
+    noise.map(|(point, normal)| ([point, normal], args.confidence.unwrap_or(CONFIDENCE)))
+}
+
+/// Says it among the settings of a summary.
+pub(super) fn add_noise(noise: Noise, figures: &mut Value) {
+    if let Some(([point, normal], confidence)) = noise {
+        figures["contact_noise_m"] = point.into();
+        figures["normal_noise_rad"] = normal.into();
+        figures["confidence"] = confidence.into();
+    }
+}
+
 /// Everything but the goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Settings {
     pub(crate) planner: PlannerAs,
     pub(crate) seed: u64,
     pub(crate) budget: usize,
-    /// Standard deviations of points (m) and normals (rad), and the confidence.
-    pub(crate) noise: Option<([f64; 2], f64)>,
+    pub(crate) noise: Noise,
     /// Standard deviations of points along palms (m) and of forces (N), and the confidence, where palms turn and the motion is estimated.
     pub(crate) sensors: Option<([f64; 2], f64)>,
 }
@@ -52,11 +69,7 @@ impl Settings {
             "seed": self.seed,
             "budget": self.budget,
         });
-        if let Some(([point, normal], confidence)) = self.noise {
-            figures["contact_noise_m"] = point.into();
-            figures["normal_noise_rad"] = normal.into();
-            figures["confidence"] = confidence.into();
-        }
+        add_noise(self.noise, &mut figures);
         if let Some(([point, force], confidence)) = self.sensors {
             figures["contact_noise_m"] = point.into();
             figures["force_noise_n"] = force.into();

@@ -4,6 +4,7 @@
 
 pub(crate) mod schema;
 
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -106,6 +107,17 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// What a command prints with `--json`, with the code that it is to end with.
+pub(crate) fn json(scratch: &Scratch, arguments: &[&str], code: i32) -> Value {
+    let run = scratch.run(arguments);
+    assert_eq!(run.code, Some(code), "{arguments:?} {}{}", run.stdout, run.stderr);
+    serde_json::from_str(&run.stdout).unwrap()
+}
+
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 /// Waits until `condition` holds; false when the child ended before.
