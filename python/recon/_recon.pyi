@@ -215,12 +215,13 @@ class Reconstruction:
         export_shape: str = "auto",
         mesh: Sequence[str] = (),
         mcap: bool = False,
+        covariance: bool = False,
         force: bool = False,
     ) -> None:
         """Writes the folder that the command writes, whole or not at all.
 
         export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mesh: "stl", "glb": the
-        bounds in these formats beside PLY. mcap: a bag for Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
+        bounds in these formats beside PLY. mcap: a bag for Foxglove too. covariance: that of the pose at all samples too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
         """
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
@@ -337,6 +338,9 @@ class PlaneReconstruction:
     def angular_velocity_std(self) -> _Array:
         """Standard deviations of the angular velocity, (n,), rad/s."""
     @property
+    def pose_covariance(self) -> _Array:
+        """Covariances of position and turn together, (n, 3, 3), m and rad."""
+    @property
     def relied_on(self) -> NDArray[np.bool_]:
         """Whether the motion of a sample is relied on to within its deviations, (n,), bool."""
     @property
@@ -369,8 +373,9 @@ class PlaneReconstruction:
     @property
     def report_html(self) -> str:
         """The page that the command writes (HTML, which loads nothing)."""
-    def write(self, folder: _Path, *, force: bool = False) -> None:
-        """Writes the folder that the command writes, whole or not at all; force: write beside files that recon did not write. Raises OutputError."""
+    def write(self, folder: _Path, *, covariance: bool = False, force: bool = False) -> None:
+        """Writes the folder that the command writes, whole or not at all; covariance: that of the pose at all samples too; force: write beside files that
+        recon did not write. Raises OutputError."""
     def _repr_html_(self) -> str: ...
     def __len__(self) -> int: ...
 

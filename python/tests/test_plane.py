@@ -124,6 +124,10 @@ def test_arrays_are_the_columns_of_the_tables(log: plane.Log, result: plane.Reco
     assert np.array_equal(result.motion, np.column_stack([motion[name] for name in ("x", "y", "phi0", "vx", "vy", "omega0")]))
     assert np.array_equal(result.orientation, motion["phi0"]) and np.array_equal(result.angular_velocity, motion["omega0"])
     assert np.array_equal(result.velocity_std, np.column_stack([motion["std_vx"], motion["std_vy"]]))
+    covariance = result.pose_covariance
+    assert covariance.shape == (len(result), 3, 3) and np.array_equal(covariance, covariance.transpose(0, 2, 1))
+    std = np.column_stack([result.position_std, result.turn_std])
+    assert np.allclose(np.einsum("kii->ki", covariance), std**2, rtol=1e-9, atol=0.0)
     assert np.array_equal(result.turn_std, motion["std_phi0"]) and np.array_equal(result.angular_velocity_std, motion["std_omega0"])
     assert np.array_equal(result.modes[:, 1], motion["mode_2"]) and np.array_equal(result.relied_on, motion["relied_on"] == 1)
     points = table((tmp_path / "out" / "contact_points.csv").read_text(encoding="utf-8"))

@@ -168,21 +168,14 @@ impl Scene {
     /// What is told of a log of this noise, without friction.
     #[must_use]
     pub fn options(&self, noise: PlanarNoise, body: Option<PlanarMass>) -> PlaneOptions {
-        PlaneOptions {
-            noise: ContactNoiseLevel {
-                contact: noise.contact,
-                force_fixed: noise.force,
-                force_share: 0.0,
-                impulse: None,
-                floor: FLOOR * self.length / self.time,
-            },
-            gravity: GRAVITY,
-            friction: vec![Some(0.0); 2],
-            body,
-            size: None,
-            suspects: true,
-            mode_odds: false,
-        }
+        let level = ContactNoiseLevel {
+            contact: noise.contact,
+            force_fixed: noise.force,
+            force_share: 0.0,
+            impulse: None,
+            floor: FLOOR * self.length / self.time,
+        };
+        PlaneOptions { body, suspects: true, ..PlaneOptions::new(level, GRAVITY, vec![Some(0.0); 2]) }
     }
 
     /// Of an exact log.

@@ -172,20 +172,17 @@ fn run(
         impulse: ChannelNoise { fixed: force / rate, ..ChannelNoise::default() },
     };
     let log = level.add_to(&of.simulated(rate)?.log(&of.scene)?, seed);
+    let noise = ContactNoiseLevel {
+        contact,
+        force_fixed: force,
+        force_share: 0.0,
+        impulse: impulses.then_some(ImpulseNoise { fixed: force / rate, share: 0.0 }),
+        floor: FLOOR * of.length / of.time,
+    };
     let options = PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact,
-            force_fixed: force,
-            force_share: 0.0,
-            impulse: impulses.then_some(ImpulseNoise { fixed: force / rate, share: 0.0 }),
-            floor: FLOOR * of.length / of.time,
-        },
-        gravity: GRAVITY,
-        friction: vec![None; 2],
         body: Some(of.scene.object().mass),
-        size: None,
         suspects: true,
-        mode_odds: false,
+        ..PlaneOptions::new(noise, GRAVITY, vec![None; 2])
     };
     tally.run(&log, &options, of.length, None)?;
     Ok(())

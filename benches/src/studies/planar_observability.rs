@@ -101,13 +101,9 @@ fn along(name: &str) -> Result<Vec<Told>, Failure> {
         floor,
     };
     let options = PlaneOptions {
-        noise: level,
-        gravity: object.gravity,
-        friction: vec![Some(0.0); 2],
         body: Some(object.mass),
-        size: None,
         suspects: true,
-        mode_odds: false,
+        ..PlaneOptions::new(level, object.gravity, vec![Some(0.0); 2])
     };
     let estimate = estimate_plane(&log, &options)?;
     let mut all = Vec::new();

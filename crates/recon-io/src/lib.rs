@@ -96,8 +96,8 @@ pub use summary::{
     verdict_figures,
 };
 pub use table::{
-    mode_probabilities, write_contact_curves, write_covariances, write_estimated_motion, write_motion,
-    write_radius_functions,
+    POSE, POSE_IN_PLANE, mode_probabilities, write_contact_curves, write_covariances, write_estimated_motion,
+    write_motion, write_radius_functions,
 };
 pub use touches::{
     Touches, TouchesError, TouchesErrorKind, parse_contacts, parse_planar_contacts, parse_poses,

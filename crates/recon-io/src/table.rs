@@ -77,14 +77,23 @@ pub fn write_estimated_motion(
     to.flush()
 }
 
+/// Names of the numbers of a pose in a table of its covariances: centre of mass and turn since the first sample.
+pub const POSE: [&str; 6] = ["cmx", "cmy", "cmz", "turnx", "turny", "turnz"];
+/// The same in the plane.
+pub const POSE_IN_PLANE: [&str; 3] = ["x", "y", "phi0"];
+
 /// Writes covariances of poses over time: position (m) and turn (rad), world axes, row by row on and above the diagonal.
 ///
 /// # Errors
 /// Those of `to`.
-pub fn write_covariances(times: &[f64], covariances: &[[[f64; 6]; 6]], mut to: impl Write) -> io::Result<()> {
-    const POSE: [&str; 6] = ["cmx", "cmy", "cmz", "turnx", "turny", "turnz"];
-    let above = || (0..6).flat_map(|i| (i..6).map(move |k| (i, k)));
-    let names: Vec<String> = above().map(|(i, k)| format!("cov_{}_{}", POSE[i], POSE[k])).collect();
+pub fn write_covariances<const N: usize>(
+    pose: [&str; N],
+    times: &[f64],
+    covariances: &[[[f64; N]; N]],
+    mut to: impl Write,
+) -> io::Result<()> {
+    let above = || (0..N).flat_map(|i| (i..N).map(move |k| (i, k)));
+    let names: Vec<String> = above().map(|(i, k)| format!("cov_{}_{}", pose[i], pose[k])).collect();
     writeln!(to, "t,{}", names.join(","))?;
     let (mut row, mut numbers) = (String::new(), Vec::new());
     for (t, of) in times.iter().zip(covariances) {

@@ -150,6 +150,12 @@ impl PlaneReconstruction {
         column(self.all_deviations(py)?, 5)
     }
 
+    /// Covariances of position and turn together, (n, 3, 3), m and rad.
+    #[getter]
+    fn pose_covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        block(py, self.made.pose_covariances().as_flattened().as_flattened().to_vec(), [3, 3])
+    }
+
     /// Whether the motion of a sample is relied on to within its deviations, (n,), bool.
     #[getter]
     fn relied_on<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -221,10 +227,14 @@ impl PlaneReconstruction {
         Ok(String::from_utf8_lossy(&page).into_owned())
     }
 
-    /// Writes the folder that the command writes, whole or not at all; force: write beside files that recon did not write. Raises OutputError.
-    #[pyo3(signature = (folder, *, force=false))]
-    fn write(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
-        py.detach(|| self.made.write(&folder, force)).map_err(raised)
+    /// Writes the folder that the command writes, whole or not at all; covariance: that of the pose at all samples too; force: write beside files that
+    /// recon did not write. Raises OutputError.
+    #[pyo3(signature = (folder, *, covariance=false, force=false))]
+    fn write(&self, py: Python<'_>, folder: PathBuf, covariance: bool, force: bool) -> PyResult<()> {
+        let mut words = Vec::new();
+        words.extend(covariance.then(|| "--covariance".to_owned()));
+        words.extend(force.then(|| "--force".to_owned()));
+        py.detach(|| self.made.write(&folder, &words)).map_err(raised)
     }
 
     /// The report, in a notebook.

@@ -320,8 +320,8 @@ impl Reconstruction {
     /// Writes the folder that the command writes, whole or not at all: motion.csv, contact_curves.csv, summary.json, meshes, report.html.
     ///
     /// export: "mjcf", "urdf": the object for simulators, with export_shape "auto", "ellipsoid", "inner" or "outer". mesh: "stl", "glb": the
-    /// bounds in these formats beside PLY. mcap: a bag for Foxglove too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
-    #[pyo3(signature = (folder, *, export=Vec::new(), export_shape="auto", mesh=Vec::new(), mcap=false, force=false))]
+    /// bounds in these formats beside PLY. mcap: a bag for Foxglove too. covariance: that of the pose at all samples too. force: write beside files that recon did not write, which are never replaced. Raises OutputError.
+    #[pyo3(signature = (folder, *, export=Vec::new(), export_shape="auto", mesh=Vec::new(), mcap=false, covariance=false, force=false))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn write(
         &self,
@@ -331,6 +331,7 @@ impl Reconstruction {
         export_shape: &str,
         mesh: Vec<String>,
         mcap: bool,
+        covariance: bool,
         force: bool,
     ) -> PyResult<()> {
         let mut words: Vec<String> = export.iter().map(|format| format!("--export={format}")).collect();
@@ -339,6 +340,7 @@ impl Reconstruction {
         }
         words.extend(mesh.iter().map(|format| format!("--mesh={format}")));
         words.extend(mcap.then(|| "--mcap".to_owned()));
+        words.extend(covariance.then(|| "--covariance".to_owned()));
         words.extend(force.then(|| "--force".to_owned()));
         py.detach(|| self.made.write(&folder, &words)).map_err(raised)
     }

@@ -110,21 +110,14 @@ pub(super) fn of_spec(of: Spec, seed: u64, known: bool) -> Result<Ran, Failure> 
         return Ok(Ran::Refused("a torque has no lever, or an angle is that of no palm".to_owned()));
     };
     let body = if known { Some(of.wrong.told(scene.object.mass)?) } else { None };
-    let options = PlaneOptions {
-        noise: ContactNoiseLevel {
-            contact,
-            force_fixed: force,
-            force_share: 0.0,
-            impulse: None,
-            floor: FLOOR * scene.length / scene.time,
-        },
-        gravity: G,
-        friction: vec![Some(0.0); 2],
-        body,
-        size: None,
-        suspects: true,
-        mode_odds: false,
+    let noise = ContactNoiseLevel {
+        contact,
+        force_fixed: force,
+        force_share: 0.0,
+        impulse: None,
+        floor: FLOOR * scene.length / scene.time,
     };
+    let options = PlaneOptions { body, suspects: true, ..PlaneOptions::new(noise, G, vec![Some(0.0); 2]) };
     let found = match estimate_plane(&log, &options) {
         Ok(found) => found,
         Err(error) => return Ok(Ran::refused(&error)),

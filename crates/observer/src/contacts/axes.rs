@@ -1,6 +1,6 @@
 //! How the axes of a known body may lie in the motion that was found without knowing it.
 
-use super::body::{Body, CONSTANTS, INERTIA};
+use super::body::{Body, CONSTANTS};
 use super::problem::Problem;
 use super::redrawn::FEW_DRAWS;
 use super::rivals::as_probable;
@@ -15,7 +15,7 @@ use object_dynamics::MassProperties;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// Orientations that are looked at: about 25 degrees from one to the next.
-const LOOKED_AT: usize = 400;
+pub(super) const LOOKED_AT: usize = 400;
 /// How many of them are followed to where the inertia fits best, and from how many of those a motion is solved for.
 const FOLLOWED: usize = 12;
 const SOLVED: usize = 3;
@@ -27,15 +27,9 @@ const SAME: f64 = 0.1;
 /// Logarithm of the odds from which on other axes are ruled out: one wrong in twenty thousand.
 const LEAST_LOG_ODDS: f64 = 10.0;
 /// Deviation of the logarithm of a constant that is known: as good as exact, and what pulls at it can still be told.
-const KNOWN: f64 = 1e-4;
+pub(super) const KNOWN: f64 = 1e-4;
 /// Deviation of an orientation of which nothing is known, about each axis, rad.
 pub(super) const ANY_TURN: f64 = 1.8;
-/// Deviation of the axes of a known body, rad, from which on the log does not tell them: by then they lie on a bend that no covariance follows.
-const UNTOLD: f64 = 0.9;
-/// How much dearer a motion of any axes is at most, in units of chi-squared, than that of certain ones, which is one of them: if more, what is held of
-/// its inertia is held at a wrong place.
-const DEARER: f64 = 20.0;
-
 /// Squared departure of a known body from what was found without knowing it, of four degrees of freedom, beyond which it is another one:
 /// chance goes there once in a million. What it costs to explain the log by it must go there too, as where little is known of an inertia a
 /// covariance does not reach as far.
@@ -156,55 +150,6 @@ impl Problem<'_> {
         self.frozen.clear();
         body
     }
-}
-
-impl Problem<'_> {
-    /// Takes a body of a mass that is known and of axes that may lie in any way: its inertia is about what it is in the mean over these.
-    ///
-    /// The motion is nearly linear in the inertia, which for a body that is almost a ball hardly depends on its axes; in the axes it is not.
-    pub(super) fn take_any_axes(&mut self, mass: &MassProperties) -> Option<()> {
-        let log_mass = mass.mass().ln();
-        let round = Body::free(
-            log_mass,
-            DMat3::from_diagonal(DVec3::splat(mass.principal().moments.element_sum() / 3.0)),
-        );
-        let ways: Vec<SVector<f64, CONSTANTS>> = (0..LOOKED_AT)
-            .map(|i| {
-                let R = DMat3::from_quat(orientation(i, LOOKED_AT));
-                Body::free(log_mass, R * mass.inertia() * R.transpose()).from(&round)
-            })
-            .collect();
-        let mean = ways.iter().sum::<SVector<f64, CONSTANTS>>() / LOOKED_AT as f64;
-        let spread = |of: &SVector<f64, CONSTANTS>| (of - mean) * (of - mean).transpose() / LOOKED_AT as f64;
-        let known = SMatrix::<f64, CONSTANTS, CONSTANTS>::identity() * KNOWN.powi(2);
-        let covariance = ways.iter().map(spread).sum::<SMatrix<f64, CONSTANTS, CONSTANTS>>() + known;
-        let body = round.moved(mean[0], &mean.fixed_rows::<INERTIA>(1).into_owned());
-        self.body = (body, covariance.cholesky()?.inverse());
-        self.frozen.clear();
-        Some(())
-    }
-}
-
-/// The motion of a known body whose axes the log does not tell, with how they would lie: solved for with any axes. None where it tells them.
-pub(super) fn with_any_axes(
-    problem: &mut Problem,
-    known: &Solved<CONSTANTS>,
-    mass: &MassProperties,
-) -> Option<(Solved<CONSTANTS>, DQuat)> {
-    let covariance = known.covariances(problem)?.body;
-    let widest = (4..CONSTANTS).map(|i| covariance[(i, i)]).fold(0.0, f64::max);
-    if widest < UNTOLD * UNTOLD {
-        return None;
-    }
-    let (body, frozen) = (problem.body, problem.frozen.clone());
-    let found = known.unknowns.body;
-    let start = known.unknowns.with(Body::free(found.log_mass, found.inertia()));
-    let solved = problem.take_any_axes(mass).and_then(|()| fine(problem, start));
-    let solved = solved.filter(|solved| solved.equations.cost < known.equations.cost + DEARER);
-    if solved.is_none() {
-        (problem.body, problem.frozen) = (body, frozen);
-    }
-    Some((solved?, found.orientation(mass)))
 }
 
 /// Angle between two orientations of a body that looks the same in some.

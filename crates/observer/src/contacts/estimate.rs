@@ -78,7 +78,7 @@ pub struct ContactEstimate {
     pub inertia_deviations: [f64; 3],
     /// How far the poses that are relied on may be off, all of them together, for bounds on the shape; none unless asked for.
     pub pose_errors: Option<PoseErrors>,
-    /// Covariances of the pose at all samples: centre of mass (m), turn since the first sample (rad), world axes. None unless asked for, nor in the plane.
+    /// Covariances of the pose at all samples: centre of mass (m), turn since the first sample (rad), world axes. None unless asked for.
     pub pose_covariances: Vec<[[f64; 6]; 6]>,
     /// Samples and palms, from 0, of contacts that were misread: off by far more than those around them allow. They count as where these say.
     pub misread: Vec<(usize, usize)>,
@@ -474,7 +474,7 @@ impl Found<'_> {
             suspects: suspects.clone(),
             explanations: explanations.clone(),
             pose_errors: if options.pose_errors { joint() } else { None },
-            pose_covariances: if options.pose_covariances && !options.planar { poses() } else { Vec::new() },
+            pose_covariances: if options.pose_covariances { poses() } else { Vec::new() },
             relied_on,
             deviations,
             modes,

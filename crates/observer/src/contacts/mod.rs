@@ -26,6 +26,7 @@
 //! # }
 //! ```
 
+mod any_axes;
 mod axes;
 mod backwards;
 mod beginning;

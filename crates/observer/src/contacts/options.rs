@@ -77,7 +77,7 @@ pub struct ContactOptions {
     pub size: Option<f64>,
     /// Whether to tell how far all poses together may be off, for bounds on the shape: a thousand motions are drawn for it.
     pub pose_errors: bool,
-    /// Whether to tell covariances of the pose at all samples, in space.
+    /// Whether to tell covariances of the pose at all samples.
     pub pose_covariances: bool,
     /// Whether to test what is taken as known of the sensors, and to count in all deviations what of it may be wrong: without, they are those of
     /// sensors that are as stated.

@@ -49,6 +49,14 @@ pub(super) fn flatten(deviations: &mut Deviations, across: f64) {
     deviations[0].y = across;
 }
 
+/// The same of the covariance of a pose.
+pub(super) fn flattened(of: &Matrix6<f64>, across: f64) -> Matrix6<f64> {
+    let moves = |i: usize| matches!(i, 0 | 2 | 4);
+    let mut flat = Matrix6::from_fn(|i, k| if moves(i) && moves(k) { of[(i, k)] } else { 0.0 });
+    flat[(1, 1)] = across * across;
+    flat
+}
+
 /// How the constants of a body change with the logarithm of the root of its moment of inertia about y.
 fn swell() -> SVector<f64, CONSTANTS> {
     SVector::from_fn(|i, _| if i == 1 || i == 3 { 1.0 } else { 0.0 })

@@ -1,7 +1,7 @@
 //! Other motions that explain a log as well: a covariance tells of what is near the one that was found, and of no other.
 //!
 //! Readings that hardly change (at rest, of a disc, over a short time) are explained by motions far from each other. They are looked for
-//! from starts of their own, bodies that turn at a constant rate or not at all; one that is about as probable and farther away than
+//! from starts of their own, bodies that turn at a constant rate or not at all, and what the motion comes to of a body as it was expected; one that is about as probable and farther away than
 //! deviations reach says that the log does not tell.
 
 use super::body::{Body, CONSTANTS};
@@ -9,7 +9,7 @@ use super::cold;
 use super::problem::{Problem, Unknowns};
 use super::redrawn::SMALL;
 use super::samples::deviations;
-use super::search::{ENOUGH, fine_within};
+use super::search::{ENOUGH, fine_within, of_ball};
 use super::solve::{Covariances, Solved, solve};
 use super::surprise::surprise;
 use crate::random::Normal;
@@ -85,9 +85,11 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         let body = if problem.planar { body } else { round(&body) };
         let covariances = solved.covariances(problem)?;
         let mut starts = starts(problem, &solved.unknowns, body);
+        let found = solved.unknowns.clone();
         if !problem.planar && all.len() == 1 && is_short(problem) && is_unsure(problem, solved) {
             starts.extend(flung(problem));
         }
+        starts.extend(as_expected(problem, &found));
         for start in starts {
             problem.frozen.clear();
             let so_far = [before, best].map(|i| &all[i].rival.0);
@@ -236,6 +238,16 @@ fn starts(problem: &Problem, found: &Unknowns, body: Body) -> Vec<Unknowns> {
     let along = |shift: f64| DVec3::AXES.map(|axis| [axis * shift, axis * -shift]);
     let shifts = SHIFTED.into_iter().flat_map(along).flatten();
     shifts.map(|shift| cold::shifted(problem, found, body, shift * rate)).collect()
+}
+
+/// The motion of a body whose inertia is nearly what was expected before the log was read: noise alone can pull one that hardly shows far from
+/// there, to a spin that leaves less and is far less probable. None in the plane.
+fn as_expected(problem: &mut Problem, found: &Unknowns) -> Option<Unknowns> {
+    if problem.planar {
+        return None;
+    }
+    problem.frozen.clear();
+    Some(of_ball(problem, found.with(problem.body.0))?.unknowns)
 }
 
 /// Whether a log of an unknown body is one over which starts that differ much lead to motions that leave little.

@@ -60,7 +60,9 @@ pub(super) fn poses_at_all<const P: usize>(
         |link, j, k| link.pose(log, k, [&known[j], &known[j + 1]]),
     );
     // But for rounding they are symmetric.
-    all.iter().map(|of| 0.5 * (of + of.transpose())).collect()
+    let even = |of: &Matrix6<f64>| 0.5 * (of + of.transpose());
+    let flat = |of| if problem.planar { plane::flattened(&of, log.across) } else { of };
+    all.iter().map(even).map(flat).collect()
 }
 
 /// Something at each sample of `log`, whose nodes have the motions `own`: at node `j`, and of the link after node `j` at the sample `k` inside.

@@ -209,14 +209,19 @@ fn keep(best: &mut Best, mut ended: Ended, problem: &Problem) {
 /// First of a body that is nearly a ball: its angular velocity follows from the angular momentum whatever its orientation, and what has to be
 /// found is the motion's start. Then of any body.
 fn coarse(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
+    let ball = of_ball(problem, start)?;
+    let mut found = solve::<CONSTANTS>(problem, ball.unknowns, MOST, ENOUGH[0])?;
+    found.iterations += ball.iterations;
+    Some(found)
+}
+
+/// That of a body whose inertia is nearly the one that is expected beforehand.
+pub(super) fn of_ball(problem: &mut Problem, start: Unknowns) -> Option<Solved<CONSTANTS>> {
     let known = problem.body.1;
     problem.body.1 = known * BALL;
     let ball = solve::<CONSTANTS>(problem, start, MOST, ENOUGH[0]);
     problem.body.1 = known;
-    let ball = ball?;
-    let mut found = solve::<CONSTANTS>(problem, ball.unknowns, MOST, ENOUGH[0])?;
-    found.iterations += ball.iterations;
-    Some(found)
+    ball
 }
 
 /// The last solution, in which the inertia keeps its expected value along directions of which noise alone would tell.

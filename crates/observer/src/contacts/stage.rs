@@ -1,6 +1,7 @@
 //! A motion on its way from a search to what is reported: one stage after the other replaces it by a better one.
 
-use super::axes::{Oriented, against_by_cost, known_motion, with_any_axes};
+use super::any_axes::with_any_axes;
+use super::axes::{Oriented, against_by_cost, known_motion};
 use super::beginning::Beginning;
 use super::body::CONSTANTS;
 use super::directly::directly;
@@ -11,7 +12,7 @@ use super::problem::{Beforehand, Problem};
 use super::record::Record;
 use super::redrawn::DRAWS;
 use super::rivals::{Decided, Rival, SEARCHES, as_probable, decided, others_of_any_axes, well_known};
-use super::search::{Ended, fine, finest_nodes, refined, search};
+use super::search::{ENOUGH, Ended, fine, finest_nodes, refined, search};
 use super::sharp::{blunted, sharpened, sharpest, stated};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
@@ -95,7 +96,8 @@ fn followed(
         problem.body = body;
         let other = known_motion(problem, &rival, mass);
         iterations += other.as_ref().map_or(0, |other| other.iterations);
-        let better = |other: &Oriented| other.solved.equations.cost < known.solved.equations.cost;
+        // One that is as good is the same, and what was found first is judged by the more probable motion of an unknown body.
+        let better = |other: &Oriented| other.solved.equations.cost < known.solved.equations.cost - ENOUGH[0];
         match other {
             Some(other) if better(&other) => others.push(std::mem::replace(known, other).solved),
             other => {
@@ -230,7 +232,7 @@ impl<'a> Stage<'a> {
             (problem.body, problem.frozen) = of_known;
             let rivals = rivals.into_iter().map(|rival| (rival, any)).collect();
             self.before += followed(problem, &mut known, &mut others, rivals, mass);
-            if known.solved.equations.cost > before - 1.0 {
+            if known.solved.equations.cost > before - ENOUGH[0] {
                 break;
             }
             // It is by the unknown body that a known one is judged, and not by one of any axes.

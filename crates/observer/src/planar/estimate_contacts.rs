@@ -29,6 +29,8 @@ pub struct PlaneOptions {
     pub suspects: bool,
     /// Whether to tell how probable contact modes are.
     pub mode_odds: bool,
+    /// Whether to tell covariances of the pose at all samples.
+    pub pose_covariances: bool,
 }
 
 /// Why there is no estimate.
@@ -77,6 +79,8 @@ pub struct PlaneEstimate {
     pub states: Vec<BodyState>,
     /// Standard deviations there.
     pub deviations: Vec<PlaneDeviations>,
+    /// Covariances of the pose there: centre of mass (m), turn since the first sample (rad). None unless asked for.
+    pub pose_covariances: Vec<[[f64; 3]; 3]>,
     /// Whether a sample's motion is to be relied on: to within its deviations.
     pub relied_on: Vec<bool>,
     /// Contacts of each palm on the body, at all samples where there is one that was not misread: the shape, point by point.
@@ -138,6 +142,21 @@ pub fn estimate_plane_from(
 }
 
 impl PlaneOptions {
+    /// Of a body of which nothing is known, with nothing asked beside its motion. `gravity` in m/s^2; coefficients of friction as [`Self::friction`].
+    #[must_use]
+    pub fn new(noise: ContactNoiseLevel, gravity: f64, friction: Vec<Option<f64>>) -> Self {
+        Self {
+            noise,
+            gravity,
+            friction,
+            body: None,
+            size: None,
+            suspects: false,
+            mode_odds: false,
+            pose_covariances: false,
+        }
+    }
+
     /// The same for the log in space; the coefficients of friction stand in that log itself.
     ///
     /// # Errors
@@ -151,6 +170,7 @@ impl PlaneOptions {
             size: self.size,
             suspects: self.suspects,
             mode_odds: self.mode_odds,
+            pose_covariances: self.pose_covariances,
             planar: true,
             guessed_floor: false,
             ..ContactOptions::new(self.noise, self.gravity)
@@ -197,6 +217,7 @@ impl PlaneEstimate {
         Self {
             contacts: log.palms().iter().enumerate().map(of_palm).collect(),
             deviations: deviations.collect(),
+            pose_covariances: of.pose_covariances.iter().map(pose_in_plane).collect(),
             states,
             mass: (of.mass, of.mass_deviation),
             inertia: (of.inertia.y_axis.y, of.moment_deviation(DVec3::Y)),
@@ -209,4 +230,10 @@ impl PlaneEstimate {
             evidence: of.evidence,
         }
     }
+}
+
+/// Of the covariance of a pose in space that of the pose in the plane, where turns count about -y.
+fn pose_in_plane(of: &[[f64; 6]; 6]) -> [[f64; 3]; 3] {
+    const POSE: [(usize, f64); 3] = [(0, 1.0), (2, 1.0), (4, -1.0)];
+    POSE.map(|(i, sign)| POSE.map(|(k, other)| sign * other * of[i][k]))
 }

@@ -20,15 +20,8 @@
 //! let run = simulate_prescribed(&object, &motion, PlanarStart { phi0: 5.85, omega0: 6.0 }, &times, 1e-12)?;
 //! let log = run.log()?.contact_log([0.0; 2]).ok_or("no force")?;
 //!
-//! let options = PlaneOptions {
-//!     noise: ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor: 2e-5 },
-//!     gravity: 9.81,
-//!     friction: vec![Some(0.0); 2],
-//!     body: None,
-//!     size: None,
-//!     suspects: false,
-//!     mode_odds: false,
-//! };
+//! let noise = ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor: 2e-5 };
+//! let options = PlaneOptions::new(noise, 9.81, vec![Some(0.0); 2]);
 //! let found = estimate_plane(&log, &options)?;
 //! assert!((found.mass.0 - 0.2).abs() < 1e-3);
 //! assert!((found.states[0].omega0 - 6.0).abs() < 1e-2);

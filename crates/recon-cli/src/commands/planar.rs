@@ -45,13 +45,13 @@ pub(crate) fn run(args: &PlanarArgs, console: &Console) -> Result<Outcome, CliEr
     let made = match log.contact_log(args.palm_inertias()) {
         Some(contacts) => {
             let known = hinged_pair(args.gravity, mass, args.contact_noise, args.force_noise);
-            Made::Motion(Box::new(planar_motion(contacts, &known, None)?))
+            Made::Motion(Box::new(planar_motion(contacts, &known, None, false)?))
         }
         None => Made::Fit(planar_fit::fit(args, &log)?),
     };
     let simulated = args.log.is_none().then_some(&log);
     let title = args.log.as_deref().map_or_else(|| "Fig. 3 of the paper".to_owned(), name);
-    finish(made, target, simulated, (progress, &args.output, &title), console)
+    finish(&made, target, (simulated, &[]), (progress, &args.output, &title), console)
 }
 
 /// A log of a scene in the plane: of any palms, or of two hinged ones where the scene has none.
@@ -70,11 +70,13 @@ pub(crate) fn reconstruct(
     }
     let log = read_planar(&PlanarSource::File(&args.log), &known)?;
     progress.step("estimating the motion");
-    let made = planar_motion(log, &with_palms(known), args.accuracy)?;
+    let made = planar_motion(log, &with_palms(known), args.accuracy, args.covariance)?;
+    let extras = if args.covariance { vec![made.covariances()?] } else { Vec::new() };
     let title = name(&args.log);
     let explained = made.choice.as_ref().filter(|_| args.explain).map(|choice| explained(choice, true));
     explained.iter().for_each(|text| console.note(text));
-    finish(Made::Motion(Box::new(made)), target, None, (progress, &args.output, &title), console)
+    let (made, extras) = (Made::Motion(Box::new(made)), (None, extras.as_slice()));
+    finish(&made, target, extras, (progress, &args.output, &title), console)
 }
 
 /// Refuses what would be left out in silence: files and ways of the space alone.
@@ -85,7 +87,6 @@ fn in_space_alone(args: &ReconstructArgs, scene: &Path) -> Result<(), CliError> 
         ("export", !args.export.is_empty()),
         ("mesh", !args.mesh.is_empty()),
         ("mcap", args.mcap),
-        ("covariance", args.covariance),
     ];
     match asked.into_iter().find(|(_, is_asked)| *is_asked) {
         None => Ok(()),
@@ -98,21 +99,21 @@ fn name(log: &Path) -> String {
     log.file_name().unwrap_or(log.as_os_str()).to_string_lossy().into_owned()
 }
 
-/// Writes the folder and tells of it.
+/// Writes the folder, with the log that was simulated and more files, and tells of it.
 fn finish(
-    made: Made,
+    made: &Made,
     target: FolderTarget,
-    log: Option<&PlanarLog>,
+    beside: (Option<&PlanarLog>, &[Extra]),
     (progress, folder, title): (Progress, &Path, &str),
     console: &Console,
 ) -> Result<Outcome, CliError> {
-    let figures = match &made {
+    let figures = match made {
         Made::Motion(made) => made.figures(),
         Made::Fit(made) => made.figures.clone(),
     };
-    write(target, log, &made, (title, &figures))?;
+    write(target, beside, made, (title, &figures))?;
     drop(progress);
-    let (text, sound) = match &made {
+    let (text, sound) = match made {
         Made::Motion(made) => (made.describe(), made.is_reliable()),
         Made::Fit(made) => (planar_fit::describe(made), made.warnings.is_empty()),
     };
@@ -141,60 +142,54 @@ fn demo() -> Result<(PlanarLog, PlanarMass), CliError> {
 
 fn write(
     target: FolderTarget,
-    log: Option<&PlanarLog>,
+    (log, extras): (Option<&PlanarLog>, &[Extra]),
     made: &Made,
     (title, figures): (&str, &Value),
 ) -> Result<(), CliError> {
+    let made = match made {
+        Made::Motion(made) => return write_estimated(target, made, (title, figures), (log, extras)),
+        Made::Fit(made) => made,
+    };
     while_writing(|| {
-        let mut folder = target.begin()?;
-        match made {
-            Made::Motion(made) => write_motion(&mut folder, made, title)?,
-            Made::Fit(made) => {
-                folder.write("motion.csv", |to| planar_fit::motion(made, to))?;
-                folder.write("contact_points.csv", |to| planar_fit::points(made, to))?;
-                folder.write("figures.svg", |to| write_figures(&planar_fit::panels(made), to))?;
-                folder.write("report.html", |to| write_figures_page(&planar_fit::page(made, title), to))?;
-            }
-        }
-        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
-        if let Some(log) = log {
-            folder.write("log.csv", |to| write_planar_log(log, to))?;
-        }
-        folder.commit()?;
-        Ok(())
+        let folder = target.begin()?;
+        folder.write("motion.csv", |to| planar_fit::motion(made, to))?;
+        folder.write("contact_points.csv", |to| planar_fit::points(made, to))?;
+        folder.write("figures.svg", |to| write_figures(&planar_fit::panels(made), to))?;
+        folder.write("report.html", |to| write_figures_page(&planar_fit::page(made, title), to))?;
+        finish_folder(folder, figures, log)
     })
 }
 
-/// The files of a motion.
-fn write_motion(folder: &mut OutputFolder, made: &PlanarMotion, title: &str) -> Result<(), CliError> {
-    folder.write("motion.csv", |to| made.write_motion(to))?;
-    folder.write("contact_points.csv", |to| made.write_points(to))?;
-    folder.write("radius_functions.csv", |to| made.write_radii(to))?;
-    folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
-    folder.write("report.html", |to| made.write_report(title, to))?;
-    for (name, outline) in made.bounds().into_iter().flat_map(PlanarBounds::drawn_outlines) {
-        folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
+/// Writes what all of these folders have.
+fn finish_folder(folder: OutputFolder, figures: &Value, log: Option<&PlanarLog>) -> Result<(), CliError> {
+    folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+    if let Some(log) = log {
+        folder.write("log.csv", |to| write_planar_log(log, to))?;
     }
+    folder.commit()?;
     Ok(())
 }
 
-/// Writes the folder of a motion with more files beside; returns the summary.
+/// Writes the folder of a motion, with the log that was simulated and more files.
 pub(crate) fn write_estimated(
     target: FolderTarget,
     made: &PlanarMotion,
-    title: &str,
-    extras: &[Extra],
-) -> Result<Value, CliError> {
-    let figures = made.figures();
+    (title, figures): (&str, &Value),
+    (log, extras): (Option<&PlanarLog>, &[Extra]),
+) -> Result<(), CliError> {
     while_writing(|| {
-        let mut folder = target.begin()?;
-        write_motion(&mut folder, made, title)?;
-        folder.write("summary.json", |to| writeln!(to, "{figures:#}"))?;
+        let folder = target.begin()?;
+        folder.write("motion.csv", |to| made.write_motion(to))?;
+        folder.write("contact_points.csv", |to| made.write_points(to))?;
+        folder.write("radius_functions.csv", |to| made.write_radii(to))?;
+        folder.write("figures.svg", |to| write_figures(&made.panels(), to))?;
+        folder.write("report.html", |to| made.write_report(title, to))?;
+        for (name, outline) in made.bounds().into_iter().flat_map(PlanarBounds::drawn_outlines) {
+            folder.write(name, |to| PlanarBounds::write_outline(outline, to))?;
+        }
         for (name, contents) in extras {
             folder.write(name, |to| to.write_all(contents))?;
         }
-        folder.commit()?;
-        Ok(())
-    })?;
-    Ok(figures)
+        finish_folder(folder, figures, log)
+    })
 }

@@ -177,7 +177,7 @@ impl PlaneReconstructed {
             known.mass = None;
         }
         Progress::watched(watch).step("estimating the motion");
-        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known, args.accuracy)?);
+        let made = Box::new(planar_motion(log.log.as_ref().clone(), &known, args.accuracy, true)?);
         let figures = made.figures();
         let text = recon_io::with_brief_numbers(made.describe().trim_end());
         Ok(Self { made, log: log.clone(), figures, text })
@@ -225,6 +225,11 @@ impl PlaneReconstructed {
         self.made.estimate().deviations.iter().map(row).collect()
     }
 
+    /// Covariances of all poses: centre of mass (m), turn since the first sample (rad).
+    pub fn pose_covariances(&self) -> &[[[f64; 3]; 3]] {
+        &self.made.estimate().pose_covariances
+    }
+
     /// Whether the motion of a sample is relied on to within its deviations.
     pub fn relied_on(&self) -> &[bool] {
         &self.made.estimate().relied_on
@@ -268,15 +273,16 @@ impl PlaneReconstructed {
         Ok(page)
     }
 
-    /// Writes the folder that the command writes; `force` writes beside files that recon did not write.
+    /// Writes the folder that the command writes; `options` are `--force` and `--covariance`.
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn write(&self, folder: &Path, force: bool) -> Result<(), Failure> {
+    pub fn write(&self, folder: &Path, options: &[String]) -> Result<(), Failure> {
+        let args = arguments(options, Some(folder))?;
         let inputs = [self.log.path.clone()];
-        let target = FolderTarget::new(folder, &inputs, force).map_err(CliError::from)?;
-        write_estimated(target, &self.made, &self.title(), &[])?;
-        Ok(())
+        let target = FolderTarget::new(folder, &inputs, args.force).map_err(CliError::from)?;
+        let extras = if args.covariance { vec![self.made.covariances()?] } else { Vec::new() };
+        Ok(write_estimated(target, &self.made, (&self.title(), &self.figures), (None, &extras))?)
     }
 
     fn title(&self) -> String {

@@ -16,7 +16,7 @@ use crate::progress::Progress;
 use recon::least_model::Accuracy;
 use recon::object_dynamics::SensorLog;
 use recon_io::{
-    FolderTarget, Implausibility, Level, Scene, TriangleMesh, implausibilities, implausible_contacts,
+    FolderTarget, Implausibility, Level, POSE, Scene, TriangleMesh, implausibilities, implausible_contacts,
     write_covariances, write_estimate_report,
 };
 use serde_json::Value;
@@ -103,7 +103,7 @@ impl Estimated {
     /// The table of the covariances of all poses, as a file.
     pub(crate) fn covariances(&self) -> Result<Extra, CliError> {
         let (data, mut table) = (&self.made.data, Vec::new());
-        write_covariances(data.log.times(), &data.estimate.pose_covariances, &mut table)
+        write_covariances(POSE, data.log.times(), &data.estimate.pose_covariances, &mut table)
             .map_err(CliError::Page)?;
         Ok(("covariance.csv".to_owned(), table))
     }

@@ -40,21 +40,22 @@ pub(crate) struct PlanarMotion {
     pub(crate) choice: Option<Choice>,
 }
 
-/// Estimates the motion, by the least model that serves where an accuracy is wanted; truth in the log is only compared with.
+/// Estimates the motion, by the least model that serves where an accuracy is wanted, and of all poses their covariances where those are wanted; truth in
+/// the log is only compared with.
 pub(crate) fn planar_motion(
     log: ContactLog,
     known: &PlanarKnown,
     accuracy: Option<Accuracy>,
+    covariances: bool,
 ) -> Result<PlanarMotion, CliError> {
     let noise = noise(&log, known)?;
     let options = PlaneOptions {
-        noise,
-        gravity: known.gravity,
-        friction: known.palms.iter().map(|(_, friction)| *friction).collect(),
         body: known.mass,
         size: known.size,
         suspects: true,
         mode_odds: true,
+        pose_covariances: covariances,
+        ..PlaneOptions::new(noise, known.gravity, known.palms.iter().map(|(_, friction)| *friction).collect())
     };
     let (log, estimate, known_body, choice) = match accuracy {
         None => {

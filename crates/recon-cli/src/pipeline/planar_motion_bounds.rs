@@ -62,13 +62,8 @@ mod tests {
                 floor: 2e-5,
             };
             let options = PlaneOptions {
-                noise,
-                gravity: 9.81,
-                friction: vec![Some(0.0); 2],
                 body: (seed % 2 == 0).then_some(mass),
-                size: None,
-                suspects: false,
-                mode_odds: false,
+                ..PlaneOptions::new(noise, 9.81, vec![Some(0.0); 2])
             };
             let estimate = estimate_plane(&log, &options).unwrap();
             let made = motion_bounds(&log, &estimate, 1e-4, 0.95).unwrap().unwrap();

@@ -1,8 +1,10 @@
 //! Tables of a motion that was estimated in the plane.
 
+use super::folder::Extra;
 use super::planar_motion::PlanarMotion;
+use crate::error::CliError;
 use recon::object_dynamics::planar::BodyState;
-use recon_io::{mode_columns, push_modes};
+use recon_io::{POSE_IN_PLANE, mode_columns, push_modes, write_covariances};
 use std::io::{self, Write};
 
 impl PlanarMotion {
@@ -24,6 +26,15 @@ impl PlanarMotion {
             writeln!(to, "{modes},{}", u8::from(self.estimate.relied_on[k]))?;
         }
         Ok(())
+    }
+
+    /// The table of the covariances of all poses, as a file.
+    pub(crate) fn covariances(&self) -> Result<Extra, CliError> {
+        let times: Vec<f64> = self.log.samples().iter().map(|sample| sample.t).collect();
+        let mut table = Vec::new();
+        write_covariances(POSE_IN_PLANE, &times, &self.estimate.pose_covariances, &mut table)
+            .map_err(CliError::Page)?;
+        Ok(("covariance.csv".to_owned(), table))
     }
 
     /// The radius function at the contact of each palm, m: `nan` where it is not touched.

@@ -22,15 +22,7 @@ pub(crate) fn noise_level(contact: f64, force: f64, length: f64) -> ContactNoise
 
 /// What is told of two palms without friction.
 pub(crate) fn options(noise: ContactNoiseLevel, gravity: f64, body: Option<PlanarMass>) -> PlaneOptions {
-    PlaneOptions {
-        noise,
-        gravity,
-        friction: vec![Some(0.0); 2],
-        body,
-        size: None,
-        suspects: true,
-        mode_odds: false,
-    }
+    PlaneOptions { body, suspects: true, ..PlaneOptions::new(noise, gravity, vec![Some(0.0); 2]) }
 }
 
 /// Errors of an estimate at the samples that are relied on: largest of the centre of mass (m), of the turn (rad), and of any number in

@@ -78,7 +78,7 @@ impl<S: RadiusFunction + Clone> SimulatedHands<S> {
         let noise = ContactNoiseLevel { contact, force_fixed: force.fixed, force_share: 0.0, impulse, floor };
         let friction = vec![(self.friction == 0.0).then_some(0.0); 2];
         let gravity = self.object.gravity;
-        PlaneOptions { noise, gravity, friction, body: None, size: None, suspects: false, mode_odds: false }
+        PlaneOptions::new(noise, gravity, friction)
     }
 
     /// Takes the samples of another motion that began at the last sample, whose impulses count from there.

@@ -32,15 +32,7 @@ fn task(gap: f64) -> SensedTask {
     let impulse = Some(ImpulseNoise { fixed: force_fixed / RATE, share: 0.0 });
     let noise = ContactNoiseLevel { contact, force_fixed, force_share: 0.0, impulse, floor: 1e-6 };
     let friction = vec![Some(0.0); 2];
-    let sensors = PlaneOptions {
-        noise,
-        gravity: GRAVITY,
-        friction,
-        body: None,
-        size: None,
-        suspects: false,
-        mode_odds: false,
-    };
+    let sensors = PlaneOptions::new(noise, GRAVITY, friction);
     let workspace = Workspace::in_motion(0.1, GRAVITY);
     SensedTask {
         roll: RollTask { motions: 12, ..RollTask::new(Goal::Gap(gap), workspace) },

@@ -236,11 +236,12 @@ fn made_in_plane(
     }
     let read = read_planar(&PlanarSource::File(log), &known)?;
     let times: Vec<f64> = read.samples().iter().map(|sample| sample.t).collect();
-    let made = planar_motion(read, &with_palms(known), None)?;
+    let made = planar_motion(read, &with_palms(known), None, false)?;
     let row = Row::of(made.is_reliable(), made.verdict(), begun, path_in_plane(&times, made.estimate()));
     let [title, _] = names(log);
     let target = FolderTarget::new(folder, &[log.to_owned(), scene.to_owned()], false)?;
-    let summary = write_estimated(target, &made, &title, &[row.origin(args, log)])?;
+    let summary = made.figures();
+    write_estimated(target, &made, (&title, &summary), (None, &[row.origin(args, log)]))?;
     Ok(Row { summary, ..row })
 }
 

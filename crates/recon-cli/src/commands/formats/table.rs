@@ -364,7 +364,7 @@ pub(super) const FORMATS: [Format; 24] = [
             needed(
                 "cov_cmx_cmx, cov_cmx_cmy .. cov_turnz_turnz",
                 "m^2, m rad, rad^2",
-                "of centre of mass and turn since the first sample, world axes",
+                "of centre of mass and turn since the first sample, world axes; in the plane cov_x_x, cov_x_y .. cov_phi0_phi0",
             ),
         ],
     },
