@@ -103,6 +103,28 @@ fn planes_through_another_point_are_moved_there() {
     }
 }
 
+/// Twists that a file has rounded tell a rate at all samples, those about another axis at none: where a palm turns back, rounding is all that is left of one.
+#[test]
+fn a_palm_has_rates_at_all_samples_or_at_none() {
+    let told = |astray: f64| {
+        let mut records = cradle(0.0, DVec3::ZERO);
+        for (record, azimuth) in records.iter_mut().zip([0.0, 2.1, 4.2]) {
+            let RecordedMotion::Poses(poses) = record.motion.clone() else { panic!("poses") };
+            let motion = |(k, pose): (usize, SurfacePose)| {
+                let rate = 2.0 * (k as f64 / 100.0).cos();
+                let frame = PalmFrame::from_azimuth_slope(azimuth, 1.0 + 0.2 * (k as f64 / 100.0).sin());
+                let w_WP = rate * frame.t1 + astray * frame.t2;
+                MeasuredMotion { pose, v_WP: w_WP.cross(pose.p_WP), w_WP }
+            };
+            record.motion = RecordedMotion::Measured(poses.into_iter().enumerate().map(motion).collect());
+        }
+        let planes = log(records).three_planes().unwrap().log;
+        planes.samples().iter().map(|sample| sample.palms.map(|palm| palm.rate.is_some())).collect::<Vec<_>>()
+    };
+    assert!(told(1e-9).iter().all(|palms| *palms == [true; 3]));
+    assert!(told(1e-3).iter().all(|palms| *palms == [false; 3]));
+}
+
 #[test]
 fn torques_are_about_the_line_through_the_meeting_point() {
     let p_WM = DVec3::new(0.4, -0.3, 0.2);

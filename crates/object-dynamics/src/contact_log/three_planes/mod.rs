@@ -16,8 +16,8 @@ use glam::{DMat3, DVec3};
 const MEETING: f64 = 1e-9;
 /// Smallest ratio of tangential and normal force that is not the rounding of a file with nine digits.
 const ROUNDED_FORCE: f64 = 1e-8;
-/// Largest share of an angular velocity that is rounding.
-const ROUNDED_TURN: f64 = 1e-9;
+/// Share of a palm's largest angular velocity up to which a component is the rounding of a file with six digits.
+const ROUNDED_TURN: f64 = 1e-6;
 /// Squared condition of three normals at which [`contact_kinematics::PalmTriple`] takes them for parallel to one plane.
 const SQUARED_CONDITION: f64 = 1e12;
 /// Where noise alone has made tangential forces agree from sample to sample, of a million logs one is refused: by the bound
@@ -59,13 +59,11 @@ impl ContactLog {
         }
         check_friction(palms, self.times.len())?;
         let (p_WM, apart) = self.meeting_point(palms, apart)?;
+        let has_rate = palms.map(|palm| palm.twist_source() == TwistSource::Stated && self.is_about_t1(palm));
         let sample = |k: usize| {
             let reading = |i: usize| {
-                self.reading(palms[i], k, (p_WM, apart)).map_err(|source| NotThreePlanes::Frame {
-                    palm: i + 1,
-                    sample: k,
-                    time: self.times[k],
-                    source,
+                self.reading((palms[i], has_rate[i]), k, (p_WM, apart)).map_err(|source| {
+                    NotThreePlanes::Frame { palm: i + 1, sample: k, time: self.times[k], source }
                 })
             };
             Ok(Sample { t: self.times[k], palms: [reading(0)?, reading(1)?, reading(2)?] })
@@ -78,15 +76,13 @@ impl ContactLog {
 
     fn reading(
         &self,
-        palm: &LoggedPalm,
+        (palm, has_rate): (&LoggedPalm, bool),
         k: usize,
         (p_WM, apart): (DVec3, f64),
     ) -> Result<PalmReading, PalmError> {
         let motion = palm.motion(k);
         let normal = plane_normal(&motion);
         let frame = PalmFrame::from_normal(normal)?;
-        let about_t1 = motion.w_WP.dot(frame.t2).abs() <= ROUNDED_TURN * motion.w_WP.length();
-        let stated = palm.twist_source() == TwistSource::Stated && about_t1;
         Ok(PalmReading {
             normal,
             contact: palm.touch(k).map(|touch| frame.sensor_from_contact(touch.p_WC - p_WM)),
@@ -98,7 +94,17 @@ impl ContactLog {
                 }
             },
             torque: torque_about(palm, k, [p_WM, frame.t1], apart),
-            rate: stated.then(|| motion.w_WP.dot(frame.t1)),
+            rate: has_rate.then(|| motion.w_WP.dot(frame.t1)),
+        })
+    }
+
+    /// Whether a palm turns as the one number of a rate tells, at all samples: a log has rates of a palm everywhere or nowhere.
+    fn is_about_t1(&self, palm: &LoggedPalm) -> bool {
+        let motions = || (0..self.times.len()).map(|k| palm.motion(k));
+        let largest = motions().map(|motion| motion.w_WP.length()).fold(0.0, f64::max);
+        motions().all(|motion| {
+            let frame = PalmFrame::from_normal(plane_normal(&motion));
+            frame.is_ok_and(|frame| motion.w_WP.dot(frame.t2).abs() <= ROUNDED_TURN * largest)
         })
     }
 
