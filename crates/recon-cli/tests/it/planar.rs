@@ -105,7 +105,9 @@ fn palms_that_rub_are_estimated() {
             if kept { all + line + "\n" } else { all }
         });
     scratch.write("known.toml", &known);
-    for &arguments in few_or_all(&[&["--identify"][..]][..], &[&["--identify"], &[]]) {
+    for &arguments in
+        few_or_all(&[&["--identify", "--covariance"][..]][..], &[&[], &["--identify", "--covariance"]])
+    {
         let all = [&["reconstruct", "log.csv", "--scene", "known.toml", "-o", "out"], arguments].concat();
         let run = scratch.run(&all);
         assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
@@ -121,6 +123,7 @@ fn palms_that_rub_are_estimated() {
         );
     }
     modes_are_told(&scratch);
+    covariances_are_told(&scratch);
     no_more_than_needed(&scratch);
     if few_or_all(true, false) {
         return;
@@ -136,6 +139,25 @@ fn palms_that_rub_are_estimated() {
     assert!(matches!(doubt["palm"].as_u64(), Some(1 | 2)));
     assert!(doubt["text"].as_str().unwrap().contains("forces are noisier, or late"), "{doubt}");
     assert!(run.stdout.contains("sure and wrong"), "{}", run.stdout);
+}
+
+/// A row beside each of the motion, with the squares of its deviations on the diagonal.
+fn covariances_are_told(scratch: &Scratch) {
+    let [motion, covariance] =
+        ["motion", "covariance"].map(|name| Table::parse(&scratch.read(&format!("out/{name}.csv"))));
+    assert_eq!(motion.rows.len(), covariance.rows.len());
+    let number =
+        |table: &Table, k: usize, name: &str| -> f64 { table.rows[k][table.column(name)].parse().unwrap() };
+    for k in 0..motion.rows.len() {
+        for name in ["x", "y", "phi0"] {
+            let variance = number(&covariance, k, &format!("cov_{name}_{name}"));
+            let std = number(&motion, k, &format!("std_{name}"));
+            assert!((variance - std * std).abs() <= 1e-9 * variance, "{k} {name}: {variance} {std}");
+        }
+        let across = number(&covariance, k, "cov_x_phi0");
+        let most = number(&motion, k, "std_x") * number(&motion, k, "std_phi0");
+        assert!(across.abs() <= most * (1.0 + 1e-9), "{k}: {across} {most}");
+    }
 }
 
 /// Columns of modes and their probabilities against the modes of the log, and what the summary says of them.
