@@ -78,7 +78,7 @@ impl First {
         let Step { motions, body: constants } = reduced.step(&before.gradient());
         let step = motions[m];
         let of_body = reduced.of_body();
-        let mut spurious = problem.first.spurious + claimed.spurious(problem, &before, at);
+        let mut spurious = problem.first.spurious + claimed.spurious(&before, at);
         for combination in &problem.frozen {
             // It is known as it was: what equations claim of it counts no more than what noise makes of that.
             let follows = follows(of_body, combination);

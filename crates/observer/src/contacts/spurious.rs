@@ -9,13 +9,11 @@ use super::body::{Body, CONSTANTS, INERTIA};
 use super::equations::{Equations, LinkEquation};
 use super::flow::Transition;
 use super::problem::{FROZEN, Problem, Unknowns};
-use super::record::Contact;
 use super::solve::{Covariances, Solved};
 use super::state::{MOTION, Motion};
 use crate::rigid::cross_matrix;
 use glam::{DMat3, DVec3};
-use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
-use object_dynamics::ContactMode;
+use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen};
 
 /// What of the information is left at least, in any direction: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
@@ -176,52 +174,17 @@ impl Covariances<CONSTANTS> {
         Some(self)
     }
 
-    /// That of noise of the contacts, which makes conditions fall with an angular velocity that they do not fall with: the one of a body of revolution about
-    /// its axis. A contact that slides is adjusted in the direction that its condition tells of; in the other one it stays off.
-    fn spurious_of_contacts(&self, problem: &Problem, at: &Unknowns) -> OfBody {
-        let mut all = OfBody::zeros();
-        for (j, motion) in at.motions.iter().enumerate() {
-            let turn = at.body.turn(motion.q, motion.L);
-            let end = problem.nodes.get(j + 1).copied().unwrap_or(problem.nodes[j] + 1);
-            let mut of_spin = Matrix3::zeros();
-            for k in problem.nodes[j]..end {
-                let noise = problem.noise_at(k);
-                let slides =
-                    |contact: &&Contact| contact.mode == ContactMode::Slide && contact.freedoms() == 2;
-                for contact in problem.record.contacts[k].iter().filter(slides) {
-                    let told = Vector3::from(contact.n.cross(turn.w - contact.W));
-                    let variance = noise.contact * noise.contact / contact.samples;
-                    let of_condition = variance * told.norm_squared() + contact.floor(noise.floor).powi(2);
-                    if of_condition > 0.0 && told.norm_squared() > 0.0 {
-                        of_spin += told * told.transpose() * (variance / of_condition / told.norm_squared());
-                    }
-                }
-            }
-            let (by_motion, by_body) = motion.spin_derivatives(&at.body);
-            let mut by_constants = by_motion * self.motions[j].1;
-            let mut own = by_constants.fixed_columns_mut::<INERTIA>(1);
-            own += by_body;
-            all += by_constants.transpose() * of_spin * by_constants;
-        }
-        all
-    }
-
     fn shares(&self, problem: &Problem, equations: &Equations<CONSTANTS>, at: &Unknowns) -> Option<Shares> {
         // In units of the deviations as claimed: the information is one, and what noise adds to it a share.
         let factor = self.body.cholesky()?.l();
-        let spurious = problem.first.spurious + self.spurious(problem, equations, at);
+        let spurious = problem.first.spurious + self.spurious(equations, at);
         let eigen = SymmetricEigen::new(factor.transpose() * spurious * factor);
         Some(Shares { values: eigen.eigenvalues, axes: factor * eigen.eigenvectors })
     }
 
     /// What noise adds to the information on the body.
-    pub(super) fn spurious(
-        &self,
-        problem: &Problem,
-        equations: &Equations<CONSTANTS>,
-        at: &Unknowns,
-    ) -> OfBody {
-        let mut all = self.spurious_of_contacts(problem, at);
+    pub(super) fn spurious(&self, equations: &Equations<CONSTANTS>, at: &Unknowns) -> OfBody {
+        let mut all = OfBody::zeros();
         for (j, link) in equations.links.iter().enumerate() {
             let ends = [&at.motions[j], &at.motions[j + 1]];
             let slope =
