@@ -1,7 +1,7 @@
 //! What the palms sensed, in memory. File formats live elsewhere.
 
 use crate::BodyState;
-use crate::series::{SeriesError, check_lengths, check_order};
+use crate::series::{MOST_READING, SeriesError, check_lengths, check_order};
 use contact_kinematics::{Direction, DirectionError};
 use thiserror::Error;
 
@@ -57,6 +57,22 @@ pub enum LogError {
     /// A reading is NaN or infinite.
     #[error("{what} of palm {palm} at sample {sample} (t = {time} s) is {value}; it must be finite")]
     ReadingNotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given.
+        value: f64,
+    },
+    /// A reading is larger than any.
+    #[error(
+        "{what} of palm {palm} at sample {sample} (t = {time} s) is {value:.3e}; {MOST_READING:e} is the most that is taken; check its unit"
+    )]
+    TooLarge {
         /// Which reading.
         what: &'static str,
         /// Palm number from 1.
@@ -161,8 +177,15 @@ fn check_sample(index: usize, sample: &Sample, largest_force: f64) -> Result<(),
             ("rate", palm.rate),
         ];
         for (what, reading) in readings {
-            if let Some(value) = reading.filter(|v| !v.is_finite()) {
-                return Err(LogError::ReadingNotFinite { what, palm: i + 1, sample: index, time, value });
+            let (palm, sample) = (i + 1, index);
+            match reading {
+                Some(value) if !value.is_finite() => {
+                    return Err(LogError::ReadingNotFinite { what, palm, sample, time, value });
+                }
+                Some(value) if value.abs() > MOST_READING => {
+                    return Err(LogError::TooLarge { what, palm, sample, time, value });
+                }
+                _ => {}
             }
         }
         if let Some(value) = palm.force.filter(|&f| f < -0.1 * largest_force) {
@@ -211,6 +234,11 @@ mod tests {
         assert!(matches!(SensorLog::new(not_a_number, None), Err(LogError::TimeNotFinite { sample: 1, .. })));
         let force = vec![sample(0.0, 1.0), sample(1.0, f64::INFINITY)];
         assert!(matches!(SensorLog::new(force, None), Err(LogError::ReadingNotFinite { what: "force", .. })));
+        let large = vec![sample(0.0, 1.0), sample(1.0, 1e300)];
+        assert!(matches!(
+            SensorLog::new(large, None),
+            Err(LogError::TooLarge { what: "force", sample: 1, .. })
+        ));
         let pull = vec![sample(0.0, 1.0), sample(1.0, -0.5)];
         assert!(matches!(
             SensorLog::new(pull, None),

@@ -4,6 +4,8 @@ use thiserror::Error;
 
 /// Times beyond this are in no use as seconds: 300 years, and steps of a microsecond are lost in rounding.
 const LATEST: f64 = 1e10;
+/// Readings beyond this are none of a palm's, in m, N, N s, N m or rad/s: their squares still are far from the largest number.
+pub(crate) const MOST_READING: f64 = 1e9;
 
 /// Why samples are not a series.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]

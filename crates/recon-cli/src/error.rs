@@ -133,6 +133,11 @@ pub(crate) enum CliError {
         "contacts on one palm at a time tell no size of the object: give its mean radius in m, about, in the scene as object.size"
     )]
     SizeNotStated,
+    #[error(
+        "the normals of the palms lead away from the object: by them the forces on it lead down, {downwards:.3} N on average, and nothing \
+         would hold it; normals (nx, ny, nz, or z of a palm's pose) lead from a palm towards the object: turn them round"
+    )]
+    NormalsTurned { downwards: f64 },
     #[error("the log gives no motion")]
     ContactEstimate(#[from] ContactEstimateError),
     #[error("the object's shape cannot be used")]
@@ -335,6 +340,7 @@ impl CliError {
             | Self::NotThreePlanes { .. }
             | Self::NotThreeAxes { .. }
             | Self::SizeNotStated
+            | Self::NormalsTurned { .. }
             | Self::ContactEstimate(_)
             | Self::Shape(_)
             | Self::Dynamics(_)

@@ -4,7 +4,7 @@ use super::PalmHinge;
 use super::error::ContactLogError as Error;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
-    ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
+    ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, is_taken, not_taken,
 };
 use super::twice::{self, contradiction};
 use super::twists::{Apart, against_poses};
@@ -71,13 +71,10 @@ impl Builder<'_> {
             check_friction(friction).map_err(|source| Error::Friction { palm, source })?;
         }
         for (what, channel) in [("force", &record.force), ("impulse", &record.impulse)] {
-            self.check_finite(what, channel.first_not_finite())?;
+            self.check_taken(what, channel.first_not_taken())?;
         }
         let torques = record.torque.iter().flatten().enumerate();
-        self.check_finite(
-            "torque",
-            torques.filter_map(|(k, t)| Some((k, (*t)?))).find(|t| !t.1.is_finite()),
-        )?;
+        self.check_taken("torque", torques.filter_map(|(k, t)| Some((k, (*t)?))).find(|t| !is_taken(t.1)))?;
         self.check_hinge(record.hinge.as_ref())?;
         let motion = self.motion(record.motion)?;
         let (touches, offset) =
@@ -117,21 +114,21 @@ impl Builder<'_> {
         }
     }
 
-    fn check_finite(&self, what: &'static str, bad: Option<(usize, f64)>) -> Result<(), Error> {
-        match bad {
-            Some((sample, value)) => {
-                let (palm, time) = (self.palm, self.times[sample]);
-                Err(Error::ReadingNotFinite { what, palm, sample, time, value })
-            }
-            None => Ok(()),
-        }
+    fn check_taken(&self, what: &'static str, bad: Option<(usize, f64)>) -> Result<(), Error> {
+        let Some((sample, value)) = bad else { return Ok(()) };
+        let (palm, time) = (self.palm, self.times[sample]);
+        Err(if value.is_finite() {
+            Error::TooLarge { what, palm, sample, time, value }
+        } else {
+            Error::ReadingNotFinite { what, palm, sample, time, value }
+        })
     }
 
     fn check_hinge(&self, hinge: Option<&PalmHinge>) -> Result<(), Error> {
         let Some(hinge) = hinge else { return Ok(()) };
         let wrong = |what, value, must| Err(Error::Hinge { palm: self.palm, what, value, must });
-        match not_finite(hinge.pivot) {
-            Some(value) => wrong("pivot", value, "finite"),
+        match not_taken(hinge.pivot) {
+            Some(value) => wrong("pivot", value, "a place that a palm can have"),
             None if hinge.inertia >= 0.0 && hinge.inertia.is_finite() => Ok(()),
             None => wrong("moment of inertia", hinge.inertia, "zero or above, and finite"),
         }
@@ -154,9 +151,9 @@ impl Builder<'_> {
             }
             RecordedMotion::Measured(states) => {
                 let state = |(sample, state): (usize, MeasuredMotion)| -> Result<_, Error> {
-                    let bad = |v| not_finite(v).map(|value| (sample, value));
-                    self.check_finite("velocity (V)", bad(state.v_WP))?;
-                    self.check_finite("angular velocity (W)", bad(state.w_WP))?;
+                    let bad = |v| not_taken(v).map(|value| (sample, value));
+                    self.check_taken("velocity (V)", bad(state.v_WP))?;
+                    self.check_taken("angular velocity (W)", bad(state.w_WP))?;
                     Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })
                 };
                 let states = states.into_iter().enumerate().map(state).collect::<Result<Vec<_>, _>>()?;
@@ -240,7 +237,7 @@ impl Builder<'_> {
                 continue;
             };
             let (palm, time) = (self.palm, self.times[sample]);
-            self.check_finite("contact", not_finite(point).map(|value| (sample, value)))?;
+            self.check_taken("contact", not_taken(point).map(|value| (sample, value)))?;
             let pose = match motion {
                 LoggedMotion::Fixed(pose) => pose,
                 LoggedMotion::Moving { states, .. } => &states[sample].pose,

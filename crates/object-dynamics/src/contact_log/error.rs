@@ -1,5 +1,5 @@
 use crate::modes::FrictionError;
-use crate::series::SeriesError;
+use crate::series::{MOST_READING, SeriesError};
 use contact_kinematics::{PalmError, SurfaceError};
 use glam::DVec3;
 use thiserror::Error;
@@ -78,6 +78,22 @@ pub enum ContactLogError {
     /// A reading is NaN or infinite.
     #[error("{what} of palm {palm} at sample {sample} (t = {time} s) is {value}; it must be finite")]
     ReadingNotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Palm number from 1.
+        palm: usize,
+        /// Index from 0.
+        sample: usize,
+        /// Its time in s.
+        time: f64,
+        /// As given.
+        value: f64,
+    },
+    /// A reading is larger than any.
+    #[error(
+        "{what} of palm {palm} at sample {sample} (t = {time} s) is {value:.3e}; {MOST_READING:e} is the most that is taken; check its unit"
+    )]
+    TooLarge {
         /// Which reading.
         what: &'static str,
         /// Palm number from 1.
@@ -265,6 +281,7 @@ impl ContactLogError {
             Self::TimeNotFinite { sample, .. }
             | Self::Pose { sample, .. }
             | Self::ReadingNotFinite { sample, .. }
+            | Self::TooLarge { sample, .. }
             | Self::TooFast { sample, .. }
             | Self::TwistAgainstPoses { sample, .. }
             | Self::OffPalm { sample, .. }

@@ -1,5 +1,6 @@
 use super::PalmHinge;
 use crate::ContactMode;
+use crate::series::MOST_READING;
 use contact_kinematics::{PalmSurface, SurfacePose};
 use glam::DVec3;
 
@@ -134,12 +135,12 @@ impl ForceChannel {
         }
     }
 
-    /// Index of the first sample whose value is not finite, with the component at fault.
-    pub(super) fn first_not_finite(&self) -> Option<(usize, f64)> {
+    /// Index of the first sample whose value is no reading, with the component at fault.
+    pub(super) fn first_not_taken(&self) -> Option<(usize, f64)> {
         match self {
             Self::Missing => None,
-            Self::Normal(values) => values.iter().copied().enumerate().find(|(_, value)| !value.is_finite()),
-            Self::Three(vectors) => vectors.iter().enumerate().find_map(|(k, v)| Some((k, not_finite(*v)?))),
+            Self::Normal(values) => values.iter().copied().enumerate().find(|(_, value)| !is_taken(*value)),
+            Self::Three(vectors) => vectors.iter().enumerate().find_map(|(k, v)| Some((k, not_taken(*v)?))),
         }
     }
 
@@ -169,7 +170,12 @@ impl ContactPoints {
     }
 }
 
-/// The first component of `v` that is not finite.
-pub(super) fn not_finite(v: DVec3) -> Option<f64> {
-    v.to_array().into_iter().find(|c| !c.is_finite())
+/// Whether a reading is a number, and no larger than any.
+pub(super) fn is_taken(value: f64) -> bool {
+    value.abs() <= MOST_READING
+}
+
+/// The first component of `v` that is not finite, or larger than any reading.
+pub(super) fn not_taken(v: DVec3) -> Option<f64> {
+    v.to_array().into_iter().find(|c| !is_taken(*c))
 }

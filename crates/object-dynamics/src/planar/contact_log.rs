@@ -3,7 +3,7 @@
 use super::contacts::ContactScene;
 use super::hybrid::{ContactInstant, ContactSimulation};
 use super::log::PlanarTruth;
-use crate::series::{check_lengths, check_order};
+use crate::series::{MOST_READING, check_lengths, check_order};
 use crate::{ContactMode, MOST_PALMS, SeriesError};
 use contact_kinematics::planar::{PalmSurface, RadiusBounds, RadiusFunction, SurfaceError, SurfacePose};
 use glam::DVec2;
@@ -74,6 +74,18 @@ pub enum ContactLogError {
     /// A reading is not a number.
     #[error("{what} of sample {sample} is {value}; it must be finite")]
     NotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Index from 0.
+        sample: usize,
+        /// As given.
+        value: f64,
+    },
+    /// A reading is larger than any.
+    #[error(
+        "{what} of sample {sample} is {value:.3e}; {MOST_READING:e} is the most that is taken; check its unit"
+    )]
+    TooLarge {
         /// Which reading.
         what: &'static str,
         /// Index from 0.
@@ -179,8 +191,17 @@ fn check_sample(sample: usize, row: &ContactLogSample) -> Result<(), ContactLogE
         ]
     };
     let readings = std::iter::once(("t", row.t)).chain(row.palms.iter().flat_map(of_palm));
-    let bad = readings.into_iter().find(|(_, value)| !value.is_finite());
-    bad.map_or(Ok(()), |(what, value)| Err(ContactLogError::NotFinite { what, sample, value }))
+    // A time has limits of its own.
+    let bad = readings
+        .into_iter()
+        .find(|&(what, value)| !(value.abs() <= MOST_READING || what == "t" && value.is_finite()));
+    bad.map_or(Ok(()), |(what, value)| {
+        Err(if value.is_finite() {
+            ContactLogError::TooLarge { what, sample, value }
+        } else {
+            ContactLogError::NotFinite { what, sample, value }
+        })
+    })
 }
 
 #[cfg(test)]
@@ -200,6 +221,10 @@ mod tests {
             new(vec![sample(0.1, 1), sample(0.1, 1)]),
             ContactLogError::Series(SeriesError::TimeNotIncreasing { sample: 1, .. })
         ));
+        let mut strong = sample(0.1, 1);
+        strong.palms[0].force.y = -1e10;
+        let told = new(vec![sample(0.0, 1), strong]);
+        assert_eq!(told, ContactLogError::TooLarge { what: "y of a force", sample: 1, value: -1e10 });
         let readings = ContactLogError::Readings { sample: 1, expected: 1, found: 2 };
         assert_eq!(new(vec![sample(0.0, 1), sample(0.1, 2)]), readings);
         for found in [0, 6] {

@@ -2,6 +2,7 @@
 
 use crate::SeriesError;
 use crate::integrate::IntegrationError;
+use crate::series::MOST_READING;
 use contact_kinematics::planar::PalmPairError;
 use thiserror::Error;
 
@@ -53,6 +54,18 @@ pub enum PlanarLogError {
     /// A reading is not a number.
     #[error("{what} of sample {sample} is {value}; it must be finite")]
     NotFinite {
+        /// Which reading.
+        what: &'static str,
+        /// Index from 0.
+        sample: usize,
+        /// As given.
+        value: f64,
+    },
+    /// A reading is larger than any.
+    #[error(
+        "{what} of sample {sample} is {value:.3e}; {MOST_READING:e} is the most that is taken; check its unit"
+    )]
+    TooLarge {
         /// Which reading.
         what: &'static str,
         /// Index from 0.

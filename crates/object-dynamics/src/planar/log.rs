@@ -1,7 +1,7 @@
 //! What two planar palms sensed, in memory.
 
 use super::error::PlanarLogError;
-use crate::series::{check_lengths, check_order};
+use crate::series::{MOST_READING, check_lengths, check_order};
 use contact_kinematics::planar::{PalmPair, PalmPairError};
 use glam::DVec2;
 
@@ -107,8 +107,15 @@ fn check_sample(sample: usize, row: &PlanarSample, largest_force: f64) -> Result
         .chain(pair(["f1", "f2"], row.forces))
         .chain(pair(["tau1", "tau2"], row.torques));
     for (what, reading) in readings {
-        if let Some(value) = reading.filter(|v| !v.is_finite()) {
-            return Err(PlanarLogError::NotFinite { what, sample, value });
+        match reading {
+            Some(value) if !value.is_finite() => {
+                return Err(PlanarLogError::NotFinite { what, sample, value });
+            }
+            // A time has limits of its own.
+            Some(value) if value.abs() > MOST_READING && what != "t" => {
+                return Err(PlanarLogError::TooLarge { what, sample, value });
+            }
+            _ => {}
         }
     }
     for (i, value) in row.forces.into_iter().flatten().enumerate() {

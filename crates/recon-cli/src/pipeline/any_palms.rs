@@ -227,8 +227,9 @@ fn modelled(
     options: &mut ContactOptions,
     accuracy: Option<Accuracy>,
 ) -> Result<Modelled, CliError> {
+    let no_size = no_size(&log);
     let refused = |error| match error {
-        ContactEstimateError::NoSize => CliError::SizeNotStated,
+        ContactEstimateError::NoSize => no_size,
         other => CliError::ContactEstimate(other),
     };
     let Some(wanted) = accuracy else {
@@ -247,7 +248,7 @@ fn modelled(
 /// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.
 fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let rough = noise_by_roughness(log, scene).ok_or(CliError::SizeNotStated)?;
+    let rough = noise_by_roughness(log, scene).ok_or_else(|| no_size(log))?;
     // Impulses beside forces are read where their noise is stated.
     let alone = !log.palms().iter().all(by_force);
     let rough = ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough };
@@ -263,6 +264,17 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         guessed_floor,
         ..ContactOptions::new(noise, scene.gravity)
     })
+}
+
+/// Why contacts tell no size: on palms whose normals lead the wrong way they lie as on a body that is turned inside out.
+fn no_size(log: &ContactLog) -> CliError {
+    let along_normals = |palm: &&LoggedPalm| palm.force_axes() == Some(SensedAxes::Normal);
+    let upwards = |k| {
+        let forces = log.palms().iter().filter(along_normals).filter_map(|palm| palm.force(k));
+        forces.map(|force| force.vector.z).sum::<f64>()
+    };
+    let mean = (0..log.times().len()).map(upwards).sum::<f64>() / log.times().len() as f64;
+    if mean < 0.0 { CliError::NormalsTurned { downwards: -mean } } else { CliError::SizeNotStated }
 }
 
 /// The noise that the sensors are stated to have, times `mean`, and what is not stated by the roughness of the readings.

@@ -56,6 +56,12 @@ fn bad_logs_are_refused_by_line_and_column() {
     check(&["1 sample(s)", "at least 2"]);
     scratch.write("bad.csv", "");
     check(&["is empty"]);
+    spoilt(&|t| t.set(3, "s1_2", "1e300"));
+    check(&["line 5", "s1 of palm 2", "check its unit"]);
+    let normals: Vec<_> =
+        ["nx", "ny", "nz"].iter().flat_map(|n| (1..=3).map(move |i| format!("{n}_{i}"))).collect();
+    spoilt(&|t| normals.iter().for_each(|name| t.map(&[name], |n| -n)));
+    refused(&scratch, &RECONSTRUCT, 3, &["lead away from the object", "turn them round"]);
     spoilt(&|t| t.set(3, "f_2", "strong"));
     check(&["line 5, column `f_2`: `strong` is not a number"]);
     spoilt(&|t| {

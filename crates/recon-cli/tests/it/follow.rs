@@ -170,6 +170,7 @@ fn bad_input_is_refused() {
     scratch.write("log.csv", &log.text());
     scratch.write("bare.csv", &without(&log, "f_"));
     scratch.write("one.csv", &log.text().lines().take(2).collect::<Vec<_>>().join("\n"));
+    scratch.write("none_yet.csv", &log.text().lines().take(1).collect::<String>());
     scratch.write("quiet.toml", &SCENE.replace("force_std = 0.065", ""));
     log.set(30, "t", "0.001");
     scratch.write("back.csv", &log.text());
@@ -180,6 +181,7 @@ fn bad_input_is_refused() {
         (follow("log.csv", "quiet.toml"), 3, "--force-noise"),
         (follow("bare.csv", "scene.toml"), 3, "--without-forces"),
         (follow("one.csv", "scene.toml"), 3, "1 sample(s)"),
+        (follow("none_yet.csv", "scene.toml"), 3, "0 sample(s)"),
         (follow("back.csv", "scene.toml"), 3, "line 32"),
         (follow("none.csv", "scene.toml"), 3, "none.csv"),
         (vec!["follow", "log.csv", "--scene", "scene.toml", "--rate", "0"], 2, "positive"),

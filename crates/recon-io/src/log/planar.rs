@@ -114,6 +114,7 @@ fn sample(row: &Row, columns: &Columns) -> Result<PlanarSample, Kind> {
 fn sample_of(error: &PlanarLogError) -> Option<usize> {
     match *error {
         PlanarLogError::NotFinite { sample, .. }
+        | PlanarLogError::TooLarge { sample, .. }
         | PlanarLogError::NegativeForce { sample, .. }
         | PlanarLogError::Palms { sample, .. } => Some(sample),
         PlanarLogError::Series(series) => series.sample(),

@@ -138,7 +138,9 @@ impl PalmColumns {
 fn sample_of(error: &ContactLogError) -> Option<usize> {
     match *error {
         ContactLogError::Series(series) => series.sample(),
-        ContactLogError::Readings { sample, .. } | ContactLogError::NotFinite { sample, .. } => Some(sample),
+        ContactLogError::Readings { sample, .. }
+        | ContactLogError::NotFinite { sample, .. }
+        | ContactLogError::TooLarge { sample, .. } => Some(sample),
         // Errors of the palms as a whole.
         _ => None,
     }

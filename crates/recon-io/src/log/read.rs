@@ -236,6 +236,7 @@ fn sample_of(error: &LogError) -> Option<usize> {
     match *error {
         LogError::TimeNotFinite { sample, .. }
         | LogError::ReadingNotFinite { sample, .. }
+        | LogError::TooLarge { sample, .. }
         | LogError::NegativeForce { sample, .. }
         | LogError::Normal { sample, .. } => Some(sample),
         LogError::Series(series) => series.sample(),

@@ -250,6 +250,11 @@ fn readings_that_cannot_be_are_named_with_palm_sample_and_value() {
         error(times(3), infinite),
         ContactLogError::ReadingNotFinite { what: "impulse", sample: 2, .. }
     ));
+    let far = error(times(3), PalmRecord { contacts: points(DVec3::X * 1e300), ..good() });
+    let ContactLogError::TooLarge { what: "contact", palm: 1, sample: 1, value, .. } = far else {
+        panic!("{far}")
+    };
+    assert_eq!(value, 1e300);
 }
 
 /// What a palm does while nothing is recorded its velocities before and after do not say; what it does at the samples they do.

@@ -2,9 +2,9 @@
 
 use crate::error::CliError;
 use crate::pipeline::spread;
-use recon::object_dynamics::Sample;
+use recon::object_dynamics::{LogError, Sample, SeriesError};
 use recon::observer::contacts::stream::{ForceReading, PalmSensed, PlaneReadings, StreamError, StreamPalm};
-use recon_io::{LogFileError, LogReader, Scene};
+use recon_io::{LogFileError, LogFileErrorKind, LogReader, Scene};
 use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -115,7 +115,14 @@ impl<'a> Samples<'a> {
             let Some(sample) = self.read()? else { break };
             self.ahead.push_back(sample);
         }
-        Ok(())
+        match self.ahead.len() {
+            found @ (0 | 1) => {
+                let source = LogError::Series(SeriesError::TooShort { found });
+                let kind = LogFileErrorKind::Samples { line: None, source };
+                Err(CliError::Log(LogFileError { path: self.path.to_owned(), kind }))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Samples a second, from the first of them: the median interval, which a gap does not move.
