@@ -28,6 +28,7 @@ pub use record::{
 pub use three_planes::{NotThreePlanes, ThreePlanes};
 
 use crate::TrueState;
+use glam::DVec3;
 
 /// A log of one to five palms: samples in strictly increasing time, at least two of them, each with a reading of every palm.
 ///
@@ -85,6 +86,14 @@ impl ContactLog {
     pub fn split_truth(mut self) -> (Self, Option<Vec<TrueState>>) {
         self.palms.iter_mut().for_each(LoggedPalm::forget_truth);
         (Self { truth: None, ..self }, self.truth)
+    }
+
+    /// The log with all that it tells of moved by `by`, world, m.
+    #[must_use]
+    pub fn shifted(mut self, by: DVec3) -> Self {
+        self.palms.iter_mut().for_each(|palm| palm.shift(by));
+        self.truth.iter_mut().flatten().for_each(|state| state.p_WCm += by);
+        self
     }
 
     /// What the log would have been made from: points of contact in the world, as they were put on the palms.

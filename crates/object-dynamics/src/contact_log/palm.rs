@@ -69,6 +69,15 @@ impl Touch {
 }
 
 impl LoggedPalm {
+    pub(super) fn shift(&mut self, by: DVec3) {
+        match &mut self.motion {
+            LoggedMotion::Fixed(pose) => pose.p_WP += by,
+            LoggedMotion::Moving { states, .. } => states.iter_mut().for_each(|state| state.pose.p_WP += by),
+        }
+        self.touches.iter_mut().flatten().for_each(|touch| touch.p_WC += by);
+        self.hinge.iter_mut().for_each(|hinge| hinge.pivot += by);
+    }
+
     /// Its shape.
     #[must_use]
     pub fn surface(&self) -> PalmSurface {

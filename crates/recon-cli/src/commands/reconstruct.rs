@@ -24,7 +24,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     progress.step("reading the log");
     let title = args.log.file_name().unwrap_or(args.log.as_os_str()).to_string_lossy();
     let read = read_log(source(args, &scene), console)?;
-    let stand = read.stand;
+    let epoch = read.epoch;
     let asked = Asked {
         path: &args.log,
         scene: &scene,
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &ReconstructArgs, console: &Console) -> Result<Outcome, 
     };
     let made = estimated(read, &asked, &progress)?;
     progress.step("writing the results");
-    let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(stand))?;
+    let mut extras = made.extras(&args.export, args.export_shape, args.mcap.then_some(epoch))?;
     extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
     if args.covariance {
         extras.push(made.covariances()?);

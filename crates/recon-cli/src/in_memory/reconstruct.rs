@@ -5,8 +5,8 @@ use crate::cli::{Command, ReconstructArgs};
 use crate::commands::reconstruct::describe;
 use crate::error::CliError;
 use crate::pipeline::{
-    Asked, Estimated, LogOf, LogStand, WithoutForces, estimated, meshes_as, sorted_with_forces,
-    sorted_without_forces, without_forces, without_forces_page,
+    Asked, Estimated, LogOf, WithoutForces, estimated, meshes_as, seen_from_meeting_point,
+    sorted_with_forces, sorted_without_forces, without_forces, without_forces_page,
 };
 use crate::progress::{Progress, Watch};
 use glam::{DMat3, DVec3};
@@ -20,7 +20,8 @@ use std::path::Path;
 /// Everything that a log tells: what `recon reconstruct` writes into a folder.
 pub struct Reconstructed {
     made: Made,
-    stand: LogStand,
+    /// Time of a bag at which that of the log is zero, ns.
+    epoch: i64,
     log: Log,
     figures: Value,
     text: String,
@@ -53,7 +54,7 @@ impl Reconstructed {
         let progress = Progress::watched(watch);
         let title = log.title();
         let loaded = log.loaded.as_ref().clone();
-        let (made, stand) = if args.without_forces {
+        let (made, epoch) = if args.without_forces {
             let read = sorted_without_forces(loaded, scene);
             let planes = match read.log {
                 LogOf::ThreePalms(planes) => planes,
@@ -61,12 +62,13 @@ impl Reconstructed {
                     return Err(CliError::NotThreePlanes { path: log.path.clone(), source }.into());
                 }
             };
+            let (planes, warnings) = seen_from_meeting_point(planes, read.warnings);
             let (planes, _) = planes.split_truth();
-            let made = without_forces(planes, read.warnings, scene, &progress)?;
-            (Made::WithoutForces(Box::new(made)), read.stand)
+            let made = without_forces(planes, warnings, scene, &progress)?;
+            (Made::WithoutForces(Box::new(made)), read.epoch)
         } else {
             let read = sorted_with_forces(loaded, scene);
-            let stand = read.stand;
+            let epoch = read.epoch;
             let asked = Asked {
                 path: &log.path,
                 scene,
@@ -75,7 +77,7 @@ impl Reconstructed {
                 accuracy: args.accuracy,
                 covariances: true,
             };
-            (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), stand)
+            (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), epoch)
         };
         let figures = match &made {
             Made::Estimated(made) => made.figures(),
@@ -86,7 +88,7 @@ impl Reconstructed {
             Made::WithoutForces(made) => made.describe(),
         };
         let text = recon_io::with_brief_numbers(text.trim_end());
-        Ok(Self { made, stand, log: log.clone(), figures, text })
+        Ok(Self { made, epoch, log: log.clone(), figures, text })
     }
 
     /// What `summary.json` holds.
@@ -270,7 +272,7 @@ impl Reconstructed {
         let target = FolderTarget::new(folder, &inputs, args.force).map_err(CliError::from)?;
         match &self.made {
             Made::Estimated(made) => {
-                let bag = args.mcap.then_some(self.stand);
+                let bag = args.mcap.then_some(self.epoch);
                 let mut extras = made.extras(&args.export, args.export_shape, bag)?;
                 extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
                 if args.covariance {

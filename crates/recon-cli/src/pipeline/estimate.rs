@@ -6,7 +6,7 @@ use super::condensed::condensed;
 use super::export::exported;
 use super::folder::{Extra, estimate_figures, write_estimate_folder};
 use super::planes::with_forces;
-use super::read::{LogOf, LogStand, ReadLog};
+use super::read::{LogOf, ReadLog};
 use super::result_bag::bag_of_estimate;
 use super::simulate::known_body;
 use super::words::sentence;
@@ -14,7 +14,7 @@ use crate::cli::{ExportAs, ShapeAs};
 use crate::error::CliError;
 use crate::progress::Progress;
 use recon::least_model::Accuracy;
-use recon::object_dynamics::SensorLog;
+use recon::object_dynamics::ThreePlanes;
 use recon_io::{
     FolderTarget, Implausibility, Level, POSE, Scene, TriangleMesh, implausibilities, implausible_contacts,
     write_covariances, write_estimate_report,
@@ -54,7 +54,7 @@ pub(crate) fn estimated(
     let mut request =
         AnyPalmsRequest { accuracy, covariances, ..AnyPalmsRequest::new(scene, title, identify) };
     match log {
-        LogOf::ThreePalms(log) => estimated_planes(log, asked, warnings, progress),
+        LogOf::ThreePalms(planes) => estimated_planes(planes, asked, warnings, progress),
         LogOf::AnyPalms(log, why) => {
             refuse_unfelt(&log, path, &why)?;
             let odd = implausible_contacts(&log, scene);
@@ -68,7 +68,7 @@ pub(crate) fn estimated(
 
 /// Of three flat palms without friction.
 pub(crate) fn estimated_planes(
-    log: SensorLog,
+    ThreePlanes { log, p_WM, .. }: ThreePlanes,
     asked: &Asked<'_>,
     warnings: Vec<String>,
     progress: &Progress,
@@ -82,7 +82,7 @@ pub(crate) fn estimated_planes(
         AnyPalmsRequest { accuracy, covariances, ..AnyPalmsRequest::new(scene, title, identify) };
     let odd = implausibilities(&log, scene);
     let (log, together) = condensed(log);
-    let contacts = with_forces(&log, scene)?;
+    let contacts = with_forces(&log, scene)?.shifted(p_WM);
     request.friction = Some(0.0);
     request.together = together;
     request.note = "Three flat palms without friction.".to_owned();
@@ -108,20 +108,20 @@ impl Estimated {
         Ok(("covariance.csv".to_owned(), table))
     }
 
-    /// Further files of its folder: the object in these formats, and where a stand is given its bag.
+    /// Further files of its folder: the object in these formats, and where the time is given at which the log's is zero (ns) its bag.
     pub(crate) fn extras(
         &self,
         formats: &[ExportAs],
         shape: ShapeAs,
-        bag: Option<LogStand>,
+        bag: Option<i64>,
     ) -> Result<Vec<Extra>, CliError> {
         let mut extras = Vec::new();
         if !formats.is_empty() {
             let files = exported(&self.made.object()?, formats, shape)?;
             extras.extend(files.into_iter().map(|file| (file.name, file.contents)));
         }
-        if let Some(stand) = bag {
-            extras.push(bag_of_estimate(&self.made, stand)?);
+        if let Some(epoch) = bag {
+            extras.push(bag_of_estimate(&self.made, epoch)?);
         }
         Ok(extras)
     }

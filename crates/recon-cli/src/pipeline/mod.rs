@@ -64,8 +64,8 @@ pub(crate) use planar_motion::{PlanarMotion, hinged_pair, planar_motion};
 pub(crate) use planar_read::{PlanarSource, read_planar, with_palms};
 pub(crate) use plane::{PlanarBounds, PlanarRequest, planar_bounds};
 pub(crate) use read::{
-    LoadedLog, LogOf, LogSource, LogStand, load, read_log, sorted_with_forces, sorted_without_forces,
-    three_palms,
+    LoadedLog, LogOf, LogSource, load, read_log, seen_from_meeting_point, sorted_with_forces,
+    sorted_without_forces, three_palms,
 };
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use smooth::smooth_surface;

@@ -10,18 +10,9 @@ use std::path::Path;
 /// What a sensor log is estimated as.
 pub(crate) enum LogOf {
     /// Three flat palms through one point, without friction.
-    ThreePalms(SensorLog),
+    ThreePalms(ThreePlanes),
     /// Contacts of any palms; with why they are not the former.
     AnyPalms(Box<ContactLog>, NotThreePlanes),
-}
-
-/// Where a log stands in time and space.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct LogStand {
-    /// Time of a bag at which that of the log is zero, ns.
-    pub(crate) epoch: i64,
-    /// Where the origin of its positions is in the world, m.
-    pub(crate) origin: DVec3,
 }
 
 /// A sensor log that was read.
@@ -29,8 +20,8 @@ pub(crate) struct ReadLog {
     pub(crate) log: LogOf,
     /// What is to be said of it.
     pub(crate) warnings: Vec<String>,
-    /// Where it stands in time and space.
-    pub(crate) stand: LogStand,
+    /// Time of a bag at which that of the log is zero, ns.
+    pub(crate) epoch: i64,
 }
 
 /// Where a log is, and what is known beside it.
@@ -49,13 +40,14 @@ pub(crate) struct LoadedLog {
     /// What was done to a bag.
     pub(crate) notes: Vec<String>,
     pub(crate) warnings: Vec<String>,
-    pub(crate) stand: LogStand,
+    /// Time of a bag at which that of the log is zero, ns.
+    pub(crate) epoch: i64,
 }
 
 impl From<AnyLog> for LoadedLog {
     fn from(log: AnyLog) -> Self {
-        let (notes, warnings, stand) = Default::default();
-        Self { log, notes, warnings, stand }
+        let (notes, warnings, epoch) = Default::default();
+        Self { log, notes, warnings, epoch }
     }
 }
 
@@ -68,7 +60,7 @@ pub(crate) fn read_log(from: LogSource, console: &Console) -> Result<ReadLog, Cl
 pub(crate) fn three_palms(from: LogSource, console: &Console) -> Result<(SensorLog, Vec<String>), CliError> {
     let read = read(from, console, |_| None)?;
     match read.log {
-        LogOf::ThreePalms(log) => Ok((log, read.warnings)),
+        LogOf::ThreePalms(planes) => Ok(seen_from_meeting_point(planes, read.warnings)),
         LogOf::AnyPalms(_, source) => Err(CliError::NotThreePlanes { path: from.path.to_owned(), source }),
     }
 }
@@ -89,9 +81,8 @@ pub(crate) fn load(from: LogSource) -> Result<LoadedLog, CliError> {
     if is_bag(path) {
         let mapping = mapping.ok_or_else(|| CliError::NoMapping { path: path.to_owned() })?;
         let made = read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
-        let stand = LogStand { epoch: made.epoch, ..LogStand::default() };
-        let log = AnyLog::Contacts(made.log);
-        return Ok(LoadedLog { log, notes: made.notes, warnings: made.warnings, stand });
+        let BagLog { log, notes, warnings, epoch, .. } = made;
+        return Ok(LoadedLog { log: AnyLog::Contacts(log), notes, warnings, epoch });
     }
     // What is not there at all is named by the reader.
     if mapping.is_some() && path.exists() {
@@ -115,26 +106,34 @@ fn sorted(
     scene: &Scene,
     lacks: impl Fn(&ContactLog) -> Option<NotThreePlanes>,
 ) -> ReadLog {
-    let LoadedLog { log, mut warnings, mut stand, .. } = loaded;
+    let LoadedLog { log, warnings, epoch, .. } = loaded;
     let log = match log {
-        AnyLog::ThreePalms(log) => return ReadLog { log: LogOf::ThreePalms(log), warnings, stand },
+        AnyLog::ThreePalms(log) => {
+            let planes = ThreePlanes { log, p_WM: DVec3::ZERO, apart: 0.0 };
+            return ReadLog { log: LogOf::ThreePalms(planes), warnings, epoch };
+        }
         AnyLog::Contacts(log) => log,
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);
     let planes = log.three_planes_within(known_to).and_then(|planes| lacks(&log).map_or(Ok(planes), Err));
     let log = match planes {
         Err(why) => LogOf::AnyPalms(Box::new(log), why),
-        Ok(ThreePlanes { log, p_WM, apart }) => {
-            let [x, y, z] = p_WM.to_array().map(brief);
-            let moved = format!(
-                "The palms meet in ({x}, {y}, {z}) m, to within {apart:.1e} m: all positions are seen from there."
-            );
-            warnings.extend((p_WM != DVec3::ZERO).then_some(moved));
-            stand.origin = p_WM;
-            LogOf::ThreePalms(log)
-        }
+        Ok(planes) => LogOf::ThreePalms(planes),
     };
-    ReadLog { log, warnings, stand }
+    ReadLog { log, warnings, epoch }
+}
+
+/// The log without a place in the world, with what is to be said of that.
+pub(crate) fn seen_from_meeting_point(
+    ThreePlanes { log, p_WM, apart }: ThreePlanes,
+    mut warnings: Vec<String>,
+) -> (SensorLog, Vec<String>) {
+    let [x, y, z] = p_WM.to_array().map(brief);
+    let moved = format!(
+        "The palms meet in ({x}, {y}, {z}) m, to within {apart:.1e} m: all positions are seen from there."
+    );
+    warnings.extend((p_WM != DVec3::ZERO).then_some(moved));
+    (log, warnings)
 }
 
 /// Reads a bag by a mapping, with what a scene says of the palms.

@@ -1,15 +1,14 @@
 //! Results as a bag.
 
 use super::any_palms::AnyPalms;
-use super::read::LogStand;
 use crate::error::CliError;
 use recon_io::{ResultBag, ResultContact, ResultPose};
 
 /// Name of the bag in a folder of results.
 const NAME: &str = "result.mcap";
 
-/// Name and contents of the bag of an estimate.
-pub(crate) fn bag_of_estimate(made: &AnyPalms, stand: LogStand) -> Result<(String, Vec<u8>), CliError> {
+/// Name and contents of the bag of an estimate, the time of whose log is zero at `epoch`, ns.
+pub(crate) fn bag_of_estimate(made: &AnyPalms, epoch: i64) -> Result<(String, Vec<u8>), CliError> {
     let data = &made.data;
     let contacts = |palm: &recon::object_dynamics::LoggedPalm| {
         let contact = |k: usize| {
@@ -24,8 +23,7 @@ pub(crate) fn bag_of_estimate(made: &AnyPalms, stand: LogStand) -> Result<(Strin
     };
     let bounds = made.bounds.as_ref();
     let bag = ResultBag {
-        epoch: stand.epoch,
-        origin: stand.origin,
+        epoch,
         times: data.log.times(),
         motion: data.estimate.states.iter().enumerate().map(pose).collect(),
         contacts: data.log.palms().iter().map(contacts).collect(),

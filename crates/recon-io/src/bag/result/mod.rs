@@ -27,8 +27,6 @@ const SECOND: i64 = 1_000_000_000;
 pub struct ResultBag<'a> {
     /// Time at which that of the samples is zero, ns since the epoch of the clock.
     pub epoch: i64,
-    /// Where the origin of the positions below is in the frame `world`, m.
-    pub origin: DVec3,
     /// Times of the samples, s.
     pub times: &'a [f64],
     /// Motion at the samples.
@@ -128,7 +126,7 @@ impl ResultBag<'_> {
     fn pose(&self, bag: &mut Writer<'_>, k: usize, time: i64) -> io::Result<()> {
         let Some(pose) = self.motion.get(k) else { return Ok(()) };
         let header = Header { time, frame: "world" };
-        let place = (self.origin + pose.p_WCm, pose.R_WO);
+        let place = (pose.p_WCm, pose.R_WO);
         bag.write("/tf", Definition::TFMessage, time, &encode::transform(header, OBJECT, place))?;
         let message = encode::pose_with_covariance(header, place, pose.covariance);
         bag.write("/recon/pose", Definition::PoseWithCovarianceStamped, time, &message)
@@ -138,7 +136,7 @@ impl ResultBag<'_> {
         let header = Header { time, frame: "world" };
         for (i, palm) in self.contacts.iter().enumerate() {
             let contact = palm.get(k).copied().flatten();
-            let contact = contact.map(|c| (self.origin + c.p_WC, c.force.unwrap_or_default()));
+            let contact = contact.map(|c| (c.p_WC, c.force.unwrap_or_default()));
             let topic = format!("/recon/palm_{}/contact", i + 1);
             bag.write(&topic, Definition::Contact, time, &encode::contact(header, contact))?;
         }
@@ -148,7 +146,7 @@ impl ResultBag<'_> {
     /// Where palms touch the object.
     fn touched(&self, k: usize) -> Vec<DVec3> {
         let contacts = self.contacts.iter().filter_map(|palm| palm.get(k).copied().flatten());
-        contacts.map(|contact| self.origin + contact.p_WC).collect()
+        contacts.map(|contact| contact.p_WC).collect()
     }
 
     /// Points from the tail of each force's arrow to where it pushes.
@@ -157,7 +155,7 @@ impl ResultBag<'_> {
         let arrow = |contact: ResultContact| {
             let force = contact.force.filter(|force| *force != DVec3::ZERO)?;
             let at = move |j: u32| (f64::from(j) / f64::from(ALONG_ARROW) - 1.0) * scale * force;
-            Some((0..=ALONG_ARROW).map(move |j| self.origin + contact.p_WC + at(j)))
+            Some((0..=ALONG_ARROW).map(move |j| contact.p_WC + at(j)))
         };
         contacts.filter_map(arrow).flatten().collect()
     }
@@ -173,8 +171,7 @@ impl ResultBag<'_> {
                 None => {
                     markers.extend([Marker::gone(header, "contacts", i), Marker::gone(header, "forces", i)])
                 }
-                Some(ResultContact { p_WC, force }) => {
-                    let at = self.origin + p_WC;
+                Some(ResultContact { p_WC: at, force }) => {
                     markers.push(Marker::ball(header, "contacts", i, at, size));
                     let force = force.filter(|force| *force != DVec3::ZERO && scale > 0.0);
                     // The arrow ends where it pushes.

@@ -11,16 +11,15 @@ fn tetrahedron() -> TriangleMesh {
 
 fn result<'a>(times: &'a [f64], mesh: &'a TriangleMesh) -> ResultBag<'a> {
     let pose = |t: &f64| ResultPose {
-        p_WCm: DVec3::new(*t, 0.0, 1.0),
+        p_WCm: DVec3::new(*t, 0.0, 6.0),
         R_WO: DQuat::from_rotation_x(*t),
         covariance: Some([[0.01; 6]; 6]),
     };
     let contact = |t: &f64| {
-        (*t < 0.5).then_some(ResultContact { p_WC: DVec3::new(*t, 0.0, 0.0), force: Some(2.0 * DVec3::Z) })
+        (*t < 0.5).then_some(ResultContact { p_WC: DVec3::new(*t, 0.0, 5.0), force: Some(2.0 * DVec3::Z) })
     };
     ResultBag {
         epoch: 1_760_000_000_000_000_000,
-        origin: DVec3::new(0.0, 0.0, 5.0),
         times,
         motion: times.iter().map(pose).collect(),
         contacts: vec![times.iter().map(contact).collect()],
