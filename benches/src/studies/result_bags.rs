@@ -141,8 +141,7 @@ fn bag<'a>(
         }
     }
     let curves = (0..100).map(|_| size * source.normal3()).collect();
-    let origin = size * source.normal3();
-    ResultBag { epoch: EPOCH, origin, times, motion, contacts, curves, lower: Some(mesh), upper: Some(mesh) }
+    ResultBag { epoch: EPOCH, times, motion, contacts, curves, lower: Some(mesh), upper: Some(mesh) }
 }
 
 /// What is in the messages of each topic.
@@ -154,13 +153,12 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
     };
     let place = |k: usize| {
         let pose = &bag.motion[k];
-        numbers([(bag.origin + pose.p_WCm).to_array().as_slice(), &pose.R_WO.to_array()].concat())
+        numbers([pose.p_WCm.to_array().as_slice(), &pose.R_WO.to_array()].concat())
     };
     let covariance = |k: usize| numbers(bag.motion[k].covariance.unwrap_or_default().as_flattened().to_vec());
-    let touched =
-        |k: usize| points((0..PALMS).filter_map(|palm| Some(bag.origin + bag.contacts[palm][k]?.p_WC)));
+    let touched = |k: usize| points((0..PALMS).filter_map(|palm| Some(bag.contacts[palm][k]?.p_WC)));
     let touch = |palm: usize, k: usize| {
-        let contact = bag.contacts[palm][k].map(|c| [bag.origin + c.p_WC, c.force.unwrap_or_default()]);
+        let contact = bag.contacts[palm][k].map(|c| [c.p_WC, c.force.unwrap_or_default()]);
         let touched = Value::from(u8::from(contact.is_some()));
         [vec![touched], points(contact.unwrap_or_default())].concat()
     };
