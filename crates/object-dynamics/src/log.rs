@@ -1,7 +1,7 @@
 //! What the palms sensed, in memory. File formats live elsewhere.
 
 use crate::BodyState;
-use crate::series::{MOST_READING, SeriesError, check_lengths, check_order};
+use crate::series::{MOST_READING, SeriesError, check_lengths, check_order, is_taken};
 use contact_kinematics::{Direction, DirectionError};
 use thiserror::Error;
 
@@ -178,14 +178,12 @@ fn check_sample(index: usize, sample: &Sample, largest_force: f64) -> Result<(),
         ];
         for (what, reading) in readings {
             let (palm, sample) = (i + 1, index);
-            match reading {
-                Some(value) if !value.is_finite() => {
-                    return Err(LogError::ReadingNotFinite { what, palm, sample, time, value });
-                }
-                Some(value) if value.abs() > MOST_READING => {
-                    return Err(LogError::TooLarge { what, palm, sample, time, value });
-                }
-                _ => {}
+            if let Some(value) = reading.filter(|value| !is_taken(*value)) {
+                return Err(if value.is_finite() {
+                    LogError::TooLarge { what, palm, sample, time, value }
+                } else {
+                    LogError::ReadingNotFinite { what, palm, sample, time, value }
+                });
             }
         }
         if let Some(value) = palm.force.filter(|&f| f < -0.1 * largest_force) {

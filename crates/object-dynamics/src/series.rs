@@ -7,6 +7,11 @@ const LATEST: f64 = 1e10;
 /// Readings beyond this are none of a palm's, in m, N, N s, N m or rad/s: their squares still are far from the largest number.
 pub(crate) const MOST_READING: f64 = 1e9;
 
+/// Whether a reading is a number, and no larger than any.
+pub(crate) fn is_taken(reading: f64) -> bool {
+    reading.abs() <= MOST_READING
+}
+
 /// Why samples are not a series.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]

@@ -4,13 +4,14 @@ use super::PalmHinge;
 use super::error::ContactLogError as Error;
 use super::palm::{LoggedMotion, LoggedPalm, Touch};
 use super::record::{
-    ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, is_taken, not_taken,
+    ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, TwistSource, not_finite,
+    not_taken,
 };
 use super::twice::{self, contradiction};
 use super::twists::{Apart, against_poses};
 use crate::MOST_PALMS;
 use crate::modes::check_friction;
-use crate::series::{check_lengths, check_order};
+use crate::series::{check_lengths, check_order, is_taken};
 use contact_kinematics::{
     CurvatureRadii, FASTEST_PALM, FASTEST_TURN, PalmSurface, PoseTable, SurfaceError, SurfacePose,
     SurfaceState,
@@ -127,8 +128,8 @@ impl Builder<'_> {
     fn check_hinge(&self, hinge: Option<&PalmHinge>) -> Result<(), Error> {
         let Some(hinge) = hinge else { return Ok(()) };
         let wrong = |what, value, must| Err(Error::Hinge { palm: self.palm, what, value, must });
-        match not_taken(hinge.pivot) {
-            Some(value) => wrong("pivot", value, "a place that a palm can have"),
+        match not_finite(hinge.pivot) {
+            Some(value) => wrong("pivot", value, "finite"),
             None if hinge.inertia >= 0.0 && hinge.inertia.is_finite() => Ok(()),
             None => wrong("moment of inertia", hinge.inertia, "zero or above, and finite"),
         }
@@ -151,7 +152,7 @@ impl Builder<'_> {
             }
             RecordedMotion::Measured(states) => {
                 let state = |(sample, state): (usize, MeasuredMotion)| -> Result<_, Error> {
-                    let bad = |v| not_taken(v).map(|value| (sample, value));
+                    let bad = |v| not_finite(v).map(|value| (sample, value));
                     self.check_taken("velocity (V)", bad(state.v_WP))?;
                     self.check_taken("angular velocity (W)", bad(state.w_WP))?;
                     Ok(MeasuredMotion { pose: pose((sample, state.pose))?, ..state })

@@ -1,6 +1,6 @@
 use super::PalmHinge;
 use crate::ContactMode;
-use crate::series::MOST_READING;
+use crate::series::is_taken;
 use contact_kinematics::{PalmSurface, SurfacePose};
 use glam::DVec3;
 
@@ -170,12 +170,12 @@ impl ContactPoints {
     }
 }
 
-/// Whether a reading is a number, and no larger than any.
-pub(super) fn is_taken(value: f64) -> bool {
-    value.abs() <= MOST_READING
+/// The first component of `v` that is not finite.
+pub(super) fn not_finite(v: DVec3) -> Option<f64> {
+    v.to_array().into_iter().find(|c| !c.is_finite())
 }
 
-/// The first component of `v` that is not finite, or larger than any reading.
+/// The first component of `v` that is no reading.
 pub(super) fn not_taken(v: DVec3) -> Option<f64> {
     v.to_array().into_iter().find(|c| !is_taken(*c))
 }

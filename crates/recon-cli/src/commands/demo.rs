@@ -4,8 +4,6 @@ use crate::console::Console;
 use crate::error::{CliError, Outcome};
 use crate::pipeline::{Asked, estimated_planes, simulate, simulate_contacts, write_contact_folder};
 use crate::progress::Progress;
-use glam::DVec3;
-use recon::object_dynamics::ThreePlanes;
 use recon_io::{FolderTarget, Scene, SceneError, SceneModel, SummaryOf, write_log};
 use std::path::Path;
 
@@ -47,8 +45,7 @@ fn fig5(args: &DemoArgs, text: &str, console: &Console) -> Result<Outcome, CliEr
         accuracy: None,
         covariances: false,
     };
-    let planes = ThreePlanes { log: simulated.log, p_WM: DVec3::ZERO, apart: 0.0 };
-    let made = estimated_planes(planes, &asked, Vec::new(), &progress)?;
+    let made = estimated_planes(simulated.log.into(), &asked, Vec::new(), &progress)?;
     progress.step("writing the results");
     let extras = [(SCENE.to_owned(), text.into()), ("log.csv".to_owned(), log)];
     let figures = made.write(target, &extras)?;

@@ -20,8 +20,6 @@ use std::path::Path;
 /// Everything that a log tells: what `recon reconstruct` writes into a folder.
 pub struct Reconstructed {
     made: Made,
-    /// Time of a bag at which that of the log is zero, ns.
-    epoch: i64,
     log: Log,
     figures: Value,
     text: String,
@@ -54,7 +52,7 @@ impl Reconstructed {
         let progress = Progress::watched(watch);
         let title = log.title();
         let loaded = log.loaded.as_ref().clone();
-        let (made, epoch) = if args.without_forces {
+        let made = if args.without_forces {
             let read = sorted_without_forces(loaded, scene);
             let planes = match read.log {
                 LogOf::ThreePalms(planes) => planes,
@@ -65,10 +63,9 @@ impl Reconstructed {
             let (planes, warnings) = seen_from_meeting_point(planes, read.warnings);
             let (planes, _) = planes.split_truth();
             let made = without_forces(planes, warnings, scene, &progress)?;
-            (Made::WithoutForces(Box::new(made)), read.epoch)
+            Made::WithoutForces(Box::new(made))
         } else {
             let read = sorted_with_forces(loaded, scene);
-            let epoch = read.epoch;
             let asked = Asked {
                 path: &log.path,
                 scene,
@@ -77,7 +74,7 @@ impl Reconstructed {
                 accuracy: args.accuracy,
                 covariances: true,
             };
-            (Made::Estimated(Box::new(estimated(read, &asked, &progress)?)), epoch)
+            Made::Estimated(Box::new(estimated(read, &asked, &progress)?))
         };
         let figures = match &made {
             Made::Estimated(made) => made.figures(),
@@ -88,7 +85,7 @@ impl Reconstructed {
             Made::WithoutForces(made) => made.describe(),
         };
         let text = recon_io::with_brief_numbers(text.trim_end());
-        Ok(Self { made, epoch, log: log.clone(), figures, text })
+        Ok(Self { made, log: log.clone(), figures, text })
     }
 
     /// What `summary.json` holds.
@@ -272,7 +269,7 @@ impl Reconstructed {
         let target = FolderTarget::new(folder, &inputs, args.force).map_err(CliError::from)?;
         match &self.made {
             Made::Estimated(made) => {
-                let bag = args.mcap.then_some(self.epoch);
+                let bag = args.mcap.then_some(self.log.loaded.epoch);
                 let mut extras = made.extras(&args.export, args.export_shape, bag)?;
                 extras.extend(meshes_as(made.surfaces(), &args.mesh)?);
                 if args.covariance {

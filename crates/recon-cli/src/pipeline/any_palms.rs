@@ -227,18 +227,18 @@ fn modelled(
     options: &mut ContactOptions,
     accuracy: Option<Accuracy>,
 ) -> Result<Modelled, CliError> {
-    let no_size = no_size(&log);
-    let refused = |error| match error {
-        ContactEstimateError::NoSize => no_size,
+    let refused = |log: &ContactLog, error| match error {
+        ContactEstimateError::NoSize => no_size(log),
         other => CliError::ContactEstimate(other),
     };
     let Some(wanted) = accuracy else {
         let (log, truth) = log.split_truth();
-        let estimate = estimate_contacts(&log, None, options).map_err(refused)?;
+        let estimate = estimate_contacts(&log, None, options).map_err(|error| refused(&log, error))?;
         options.noise = options.noise.times(estimate.evidence.rougher);
         return Ok((log, truth, estimate, None));
     };
-    let least = least_estimate(&log.clone().split_truth().0, options, wanted).map_err(refused)?;
+    let least = least_estimate(&log.clone().split_truth().0, options, wanted)
+        .map_err(|error| refused(&log, error))?;
     *options = least.options;
     options.noise = options.noise.times(least.estimate.evidence.rougher);
     let (log, truth) = one_of(&log, least.every)?.split_truth();

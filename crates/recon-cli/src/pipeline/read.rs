@@ -80,8 +80,8 @@ pub(crate) fn load(from: LogSource) -> Result<LoadedLog, CliError> {
     let LogSource { path, scene, mapping } = from;
     if is_bag(path) {
         let mapping = mapping.ok_or_else(|| CliError::NoMapping { path: path.to_owned() })?;
-        let made = read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
-        let BagLog { log, notes, warnings, epoch, .. } = made;
+        let BagLog { log, epoch, notes, warnings } =
+            read_mapped(path, &BagMapping::read(mapping)?, Some(scene))?;
         return Ok(LoadedLog { log: AnyLog::Contacts(log), notes, warnings, epoch });
     }
     // What is not there at all is named by the reader.
@@ -108,10 +108,7 @@ fn sorted(
 ) -> ReadLog {
     let LoadedLog { log, warnings, epoch, .. } = loaded;
     let log = match log {
-        AnyLog::ThreePalms(log) => {
-            let planes = ThreePlanes { log, p_WM: DVec3::ZERO, apart: 0.0 };
-            return ReadLog { log: LogOf::ThreePalms(planes), warnings, epoch };
-        }
+        AnyLog::ThreePalms(log) => return ReadLog { log: LogOf::ThreePalms(log.into()), warnings, epoch },
         AnyLog::Contacts(log) => log,
     };
     let known_to = scene.sensors.contact_off_palm.unwrap_or(0.0);

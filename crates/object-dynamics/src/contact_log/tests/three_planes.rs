@@ -101,6 +101,16 @@ fn planes_through_another_point_are_moved_there() {
             assert!((s1 - 0.01).abs() + (s2 - 0.05).abs() < 1e-13);
         }
     }
+    // And back, the palms' material with them.
+    let (first, back) = (log(cradle(0.0, p_WM)), ContactLog::try_from(&moved.log).unwrap().shifted(p_WM));
+    assert!((back.truth().unwrap()[3].p_WCm - DVec3::new(0.5, 0.6, 0.7)).length() < 1e-14);
+    for (a, b) in first.palms().iter().zip(back.palms()) {
+        for k in 0..SAMPLES {
+            let [p_WC, p_WD] = [a, b].map(|palm| palm.touch(k).unwrap().p_WC);
+            let [u, v] = [a, b].map(|palm| palm.motion(k).material_velocity(p_WC));
+            assert!((p_WC - p_WD).length() < 1e-13 && (u - v).length() < 1e-6, "{k}: {p_WC} {p_WD} {u} {v}");
+        }
+    }
 }
 
 /// Twists that a file has rounded tell a rate at all samples, those about another axis at none: where a palm turns back, rounding is all that is left of one.

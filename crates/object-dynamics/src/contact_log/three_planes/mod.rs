@@ -36,6 +36,13 @@ pub struct ThreePlanes {
     pub apart: f64,
 }
 
+/// Palms that meet in the world's origin.
+impl From<SensorLog> for ThreePlanes {
+    fn from(log: SensorLog) -> Self {
+        Self { log, p_WM: DVec3::ZERO, apart: 0.0 }
+    }
+}
+
 impl ContactLog {
     /// The log as one of three flat palms through the origin: normals, contacts and normal forces. Impulses are left out.
     ///

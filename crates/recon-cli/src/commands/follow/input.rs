@@ -2,9 +2,9 @@
 
 use crate::error::CliError;
 use crate::pipeline::spread;
-use recon::object_dynamics::{LogError, Sample, SeriesError};
+use recon::object_dynamics::Sample;
 use recon::observer::contacts::stream::{ForceReading, PalmSensed, PlaneReadings, StreamError, StreamPalm};
-use recon_io::{LogFileError, LogFileErrorKind, LogReader, Scene};
+use recon_io::{LogFileError, LogReader, Scene};
 use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -116,11 +116,7 @@ impl<'a> Samples<'a> {
             self.ahead.push_back(sample);
         }
         match self.ahead.len() {
-            found @ (0 | 1) => {
-                let source = LogError::Series(SeriesError::TooShort { found });
-                let kind = LogFileErrorKind::Samples { line: None, source };
-                Err(CliError::Log(LogFileError { path: self.path.to_owned(), kind }))
-            }
+            found @ (0 | 1) => Err(CliError::TooFewSamples { found, needed: 2 }),
             _ => Ok(()),
         }
     }
