@@ -39,6 +39,7 @@ impl Record {
             wrenches: self.wrenches.iter().rev().copied().collect(),
             intervals: self.intervals.iter().rev().map(interval).collect(),
             misread: Vec::new(),
+            misread_forces: Vec::new(),
             ..*self
         }
     }

@@ -82,6 +82,8 @@ pub struct ContactEstimate {
     pub pose_covariances: Vec<[[f64; 6]; 6]>,
     /// Samples and palms, from 0, of contacts that were misread: off by far more than those around them allow. They count as where these say.
     pub misread: Vec<(usize, usize)>,
+    /// The same of forces that show in no motion: they count as those around them say.
+    pub misread_forces: Vec<(usize, usize)>,
     /// What the data say of constants of the sensors that were taken as known; none unless asked for, nor of a log that is as good as exact.
     pub suspects: Vec<Suspect>,
     /// Where something contradicts what was taken as known: what that may be, the most probable first. None where nothing does, or nothing was asked.
@@ -471,6 +473,7 @@ impl Found<'_> {
         ContactEstimate {
             states: motions.iter().map(|(motion, _)| state(motion)).collect(),
             misread: log.misread.iter().map(|of| (of.sample, of.palm)).collect(),
+            misread_forces: log.misread_forces.iter().map(|of| (of.sample, of.palm)).collect(),
             suspects: suspects.clone(),
             explanations: explanations.clone(),
             pose_errors: if options.pose_errors { joint() } else { None },

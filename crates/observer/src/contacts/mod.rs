@@ -46,8 +46,10 @@ mod flow;
 mod gaps;
 mod impulses;
 mod joint;
+mod levers;
 mod link;
 mod lost;
+mod misread_forces;
 mod mode_odds;
 mod modes;
 mod noise;
@@ -87,6 +89,7 @@ mod triangular;
 mod unchanging;
 mod unresolved;
 mod verdict;
+mod way;
 mod widened;
 mod windows;
 

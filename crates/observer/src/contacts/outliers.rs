@@ -1,31 +1,13 @@
 //! Contacts that are off by far more than noise at one sample, or a few: a sensor's misreadings, put where the contacts around say.
 
 use super::record::Contact;
+use super::way::{STEADY, Told, Way};
 use glam::DVec3;
 
-/// Deviations from which on a contact is off: of what noise or, where that is more, the motion itself leaves of a cubic at most samples.
-pub(super) const OFF: f64 = 8.0;
-/// Contacts on either side that tell where one should be, and among how many samples they are looked for.
-const BESIDE: usize = 2;
-const AMONG: usize = 6;
-/// Samples on either side over which the same palms must be touched: a landing bends the way of all contacts.
-const STEADY: usize = 3;
-/// Share of the spread of all contacts of a palm that it is off by at least: less harms nothing.
-const NOTABLE: f64 = 3e-3;
-/// Neighbours that may be off together: more are a motion that turns sharply.
-pub(super) const TOGETHER: usize = 2;
-/// Share of a palm's contacts beyond which they are not outliers but what the sensor is like.
-pub(super) const MOST: f64 = 0.05;
 /// Times what a peak of the force between samples moves the centre of mass by, that it may move a contact: that rolls, and the body turns too.
 const ROLLS: f64 = 2.0;
 /// Samples on either side of such a peak whose contacts it bends the way of.
 const BENT: usize = 2;
-/// Root of one and the squared weights of a cubic through two contacts on either side, evenly spaced: noise of what a contact is off it by over that of one.
-const OF_CUBIC: f64 = 1.394;
-/// Fewest contacts of a palm whose scatter can be told.
-pub(super) const FEWEST: usize = 20;
-/// Median of the length of a vector of two standard normal numbers.
-pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
 
 /// A contact that is off.
 #[derive(Clone, Copy, Debug)]
@@ -36,13 +18,6 @@ pub(super) struct Misread {
     /// Where those around it say that it is, from the record's origin, m, as well as so many contacts that are read do.
     c: DVec3,
     samples: f64,
-}
-
-/// Where others say that a contact is, m, and the sum of the squares of what they count by.
-#[derive(Clone, Copy, Debug)]
-struct Told {
-    c: DVec3,
-    squares: f64,
 }
 
 /// Contacts on planes that are off, by their samples. `deviation` is that of a contact, m, `gravity` in m/s^2.
@@ -56,12 +31,12 @@ pub(super) fn misread(
     let bends = bends(contacts, times, gravity);
     let mut all = Vec::new();
     for palm in 0..palms {
-        let way = Way::new(contacts, times, palm, &bends);
+        let way = way(contacts, times, palm, &bends);
         let off = way.off(deviation);
-        let one = |(j, Told { c, squares }): (usize, Told)| Misread {
+        let one = |(j, Told { value, squares }): (usize, Told)| Misread {
             sample: way.samples[j],
             palm,
-            c,
+            c: value,
             samples: squares.recip(),
         };
         all.extend(off.into_iter().map(one));
@@ -97,147 +72,31 @@ pub(super) fn mend(contacts: &mut [Vec<Contact>], misread: &[Misread]) {
     }
 }
 
-/// The contacts of a palm.
-struct Way {
-    samples: Vec<usize>,
-    times: Vec<f64>,
-    points: Vec<DVec3>,
-    /// What the motion may leave of them, m.
-    bends: Vec<f64>,
-    /// Whether the same palms are touched around, and this one is flat.
-    steady: Vec<bool>,
+/// Where a palm is touched.
+pub(super) fn way(contacts: &[Vec<Contact>], times: &[f64], palm: usize, bends: &[f64]) -> Way {
+    let mut way = Way::default();
+    for k in 0..contacts.len() {
+        if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
+            let flat = contact.shape == glam::DMat3::ZERO;
+            let judged = [is_steady(contacts, k) && flat, is_repeated(contacts, k, palm)];
+            way.add((k, times[k]), contact.c, bends[k], judged);
+        }
+    }
+    way
 }
 
-impl Way {
-    fn new(contacts: &[Vec<Contact>], times: &[f64], palm: usize, bends: &[f64]) -> Self {
-        let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
-        let steady = |k: usize| {
-            let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
-            around.into_iter().all(|other| touched(other).eq(touched(k)))
-        };
-        let one = |k: usize| {
-            let contact = contacts[k].iter().find(|contact| contact.palm == palm)?;
-            Some((k, contact.c, steady(k) && contact.shape == glam::DMat3::ZERO))
-        };
-        let found: Vec<_> = (0..contacts.len()).filter_map(one).collect();
-        Self {
-            samples: found.iter().map(|of| of.0).collect(),
-            times: found.iter().map(|of| times[of.0]).collect(),
-            points: found.iter().map(|of| of.1).collect(),
-            bends: found.iter().map(|of| bends[of.0]).collect(),
-            steady: found.iter().map(|of| of.2).collect(),
-        }
-    }
+/// Whether the same palms are touched around a sample.
+pub(super) fn is_steady(contacts: &[Vec<Contact>], k: usize) -> bool {
+    let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
+    let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
+    around.into_iter().all(|other| touched(other).eq(touched(k)))
+}
 
-    /// Numbers of the contacts that are off, and where they should be.
-    fn off(&self, deviation: f64) -> Vec<(usize, Told)> {
-        let count = self.points.len();
-        if count < FEWEST {
-            return Vec::new();
-        }
-        let mean = self.points.iter().sum::<DVec3>() / count as f64;
-        let square = self.points.iter().map(|point| point.distance_squared(mean)).sum::<f64>();
-        let least = deviation.max(NOTABLE / OFF * (square / count as f64).sqrt());
-        let limit = |left: &[f64]| {
-            let mut scatter: Vec<f64> = left.iter().copied().filter(|left| *left > 0.0).collect();
-            scatter.sort_by(f64::total_cmp);
-            let usual = scatter.get(scatter.len() / 2).map_or(f64::INFINITY, |median| median / MEDIAN_LENGTH);
-            OFF * usual.max(least)
-        };
-        // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
-        let left: Vec<f64> = (0..count).map(|j| self.points[j].distance(self.usual(j))).collect();
-        let most = limit(&left);
-        let suspected: Vec<bool> = (0..count).map(|j| self.steady[j] && left[j] > most).collect();
-        let left: Vec<f64> =
-            (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| self.left(j, &told))).collect();
-        let most = limit(&left);
-        let is_off = |&j: &usize| {
-            let limit = most + self.bends[j];
-            suspected[j] && left[j] > limit && !self.goes_on(j, OF_CUBIC * limit)
-        };
-        let off: Vec<usize> = (0..count).filter(is_off).collect();
-        let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
-        let off: Vec<_> = together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?))).collect();
-        if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
-    }
-
-    /// The median of the contacts around one, at an end carried on to it by the slope of medians.
-    fn usual(&self, j: usize) -> DVec3 {
-        let inner = |j: usize| j.clamp(STEADY, self.points.len() - 1 - STEADY);
-        let centre = inner(j);
-        let median = self.median(centre);
-        if centre == j {
-            return median;
-        }
-        let further = inner(2 * centre - j);
-        let share = (j as f64 - centre as f64) / (further as f64 - centre as f64);
-        median + (self.median(further) - median) * share
-    }
-
-    /// The median of each coordinate.
-    fn median(&self, centre: usize) -> DVec3 {
-        let around = &self.points[centre - STEADY..=centre + STEADY];
-        let of = |axis: usize| {
-            let mut values: Vec<f64> = around.iter().map(|point| point[axis]).collect();
-            values.sort_by(f64::total_cmp);
-            values[values.len() / 2]
-        };
-        DVec3::new(of(0), of(1), of(2))
-    }
-
-    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three;
-    /// where there is a fourth, by that with it in place of the third as well: a third that is off by as much as this one leads to it.
-    ///
-    /// Where the curvature of the object jumps, its contact changes its speed from one sample to the next: nothing that is smooth over both sides leads there.
-    fn goes_on(&self, j: usize, within: f64) -> bool {
-        let near = |other: &usize| self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
-        // Those that may be off themselves as well: so few in a row lead to no other one.
-        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
-        let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
-        let leads = |few: &[usize]| self.through(few, j).0.distance(self.points[j]) <= within;
-        [&before[..], &after].iter().any(|side| match *side {
-            [a, b, c, d, ..] => leads(&[*a, *b]) || (leads(&[*a, *b, *c]) && leads(&[*a, *b, *d])),
-            [a, b, c] => leads(&[*a, *b]) || leads(&[*a, *b, *c]),
-            [a, b] => leads(&[*a, *b]),
-            _ => false,
-        })
-    }
-
-    /// The polynomial through some contacts at the time of another one, and its weights.
-    fn through(&self, beside: &[usize], j: usize) -> (DVec3, Vec<f64>) {
-        let weight = |i: &usize| -> f64 {
-            let others = beside.iter().filter(|other| *other != i);
-            others
-                .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
-                .product()
-        };
-        let weights: Vec<f64> = beside.iter().map(weight).collect();
-        (beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum(), weights)
-    }
-
-    /// By how many metres of unit noise a contact is elsewhere than it is told.
-    fn left(&self, j: usize, told: &Told) -> f64 {
-        told.c.distance(self.points[j]) / (1.0 + told.squares).sqrt()
-    }
-
-    /// Where the cubic through the contacts beside one leads, at an end the parabola; those that are `out` say nothing. None with too few of them.
-    fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
-        let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
-        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
-        let after: Vec<usize> =
-            (j + 1..self.points.len()).take(AMONG).filter(near).take(2 * BESIDE).collect();
-        // At an end more of them on one side; a cubic that leads beyond all of them has eight times the noise of one.
-        let most = if before.is_empty() || after.is_empty() { 2 * BESIDE - 1 } else { 2 * BESIDE };
-        let from_before = before.len().min(most.saturating_sub(after.len()).max(BESIDE));
-        let from_after = after.len().min(most - from_before);
-        if from_before + from_after < most {
-            return None;
-        }
-        let beside: Vec<usize> =
-            before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
-        let (c, weights) = self.through(&beside, j);
-        Some(Told { c, squares: weights.iter().map(|weight| weight * weight).sum() })
-    }
+/// Whether a palm gave what it gave the sample before, to the last digit.
+pub(super) fn is_repeated(contacts: &[Vec<Contact>], k: usize, palm: usize) -> bool {
+    let of = |k: usize| contacts[k].iter().find(|contact| contact.palm == palm);
+    let same = |before: usize| of(before).zip(of(k)).is_some_and(|(a, b)| a.c == b.c && a.f == b.f);
+    k.checked_sub(1).is_some_and(same)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::between::intervals;
 use super::feet;
 use super::impulses;
+use super::misread_forces::{MisreadForce, mend_forces, misread_forces};
 use super::noise::{ContactNoiseLevel, WrenchNoise, traces};
 use super::options::ContactOptions;
 use super::outliers::{Misread, mend, misread};
@@ -90,6 +91,8 @@ pub(super) struct Record {
     pub(super) by_samples: bool,
     /// Contacts that were misread, and stand where those around them say.
     pub(super) misread: Vec<Misread>,
+    /// The same of forces.
+    pub(super) misread_forces: Vec<MisreadForce>,
     /// Deviation of the mean of what they scatter by along y, m: of the plane's place, where all is in one.
     pub(super) across: f64,
     /// Deviation of a contact at a sample in each direction along its palm, m.
@@ -221,6 +224,8 @@ impl Record {
         mend(&mut contacts, &misread);
         let sampled: Vec<bool> =
             log.palms().iter().map(|palm| impulses::read(palm, noise).is_none()).collect();
+        let misread_forces = misread_forces(&contacts, &times, &sampled, noise.contact, options.gravity);
+        mend_forces(&mut contacts, &misread_forces);
         let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
         let mut intervals = intervals(&times, felt, noise);
         impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
@@ -241,6 +246,7 @@ impl Record {
             all_impulses,
             by_samples,
             misread,
+            misread_forces,
             across: across.sqrt() / count as f64,
             deviation: noise.contact,
         })

@@ -5,7 +5,8 @@ use super::equations::Row;
 use super::noise::ContactNoiseLevel;
 use super::record::Contact;
 use super::state::{Motion, Turn};
-use glam::{DVec2, DVec3};
+use crate::rigid::cross_matrix;
+use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{Matrix3, SVector, Vector3};
 use object_dynamics::ContactMode;
 
@@ -142,6 +143,21 @@ impl Rows {
     pub(super) fn feet(&self) -> impl Iterator<Item = (DVec3, f64)> {
         let values = self.values();
         (0..self.count).map(move |i| (self.feet[i], values[i]))
+    }
+
+    /// What noise of the lever that is left once the contact is adjusted adds to the information on the angular velocity.
+    pub(super) fn of_levers(&self, contact: &Contact, noise: &ContactNoiseLevel) -> Matrix3<f64> {
+        let square = |of: DVec3| Matrix3::from(DMat3::from_cols(of * of.x, of * of.y, of * of.z));
+        let read = noise.contact * noise.contact / contact.samples;
+        let along = self.axes[1..].iter().take(contact.freedoms()).map(|axis| square(*axis) * read);
+        let told = self.feet.iter().take(self.count).map(|foot| square(*foot));
+        let left = along.sum::<Matrix3<f64>>() - told.sum::<Matrix3<f64>>();
+        let one = |i: usize| {
+            let axis = (0..=i).map(|k| self.axes[k] * self.whitening[(i, k)]).sum();
+            let across = Matrix3::from(cross_matrix(axis));
+            across * left * across.transpose()
+        };
+        (0..self.count).map(one).sum()
     }
 
     /// The conditions, linearised at a motion; `changes` of the angular velocity are those by the constants of the inertia.

@@ -6,6 +6,7 @@ use super::beginning::Beginning;
 use super::body::CONSTANTS;
 use super::directly::directly;
 use super::explanations::FreeBody;
+use super::levers::errors_of_levers;
 use super::onward::resumed;
 use super::plane;
 use super::problem::{Beforehand, Problem};
@@ -317,6 +318,10 @@ impl<'a> Stage<'a> {
             || self.against.is_some()
             || !self.solved.settled
             || !is_explained(self.solved.misfit(), self.solved.equations.conditions);
-        if refused { linear } else { linear.redrawn(&self.problem, &self.solved, DRAWS) }
+        if refused {
+            return linear;
+        }
+        let errors = errors_of_levers(&self.problem, &self.solved);
+        linear.redrawn(&self.problem, &self.solved, DRAWS).with_errors(errors)
     }
 }

@@ -192,6 +192,7 @@ impl Record {
             all_impulses: self.all_impulses,
             by_samples: self.by_samples,
             misread: Vec::new(),
+            misread_forces: Vec::new(),
             across: self.across,
             deviation: self.deviation,
         }
@@ -214,6 +215,7 @@ impl Record {
             all_impulses: self.all_impulses,
             by_samples: self.by_samples,
             misread: Vec::new(),
+            misread_forces: Vec::new(),
             across: self.across,
             deviation: self.deviation,
         }

@@ -151,6 +151,7 @@ pub(crate) fn estimate_any_palms(
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));
+    warnings.extend(misread_forces(&log, &estimate));
     warnings.extend(estimate.mode_odds.as_ref().and_then(mode_doubts));
     progress.step("bounding the shape");
     let bounds = match estimate_bounds(&log, &estimate, &curves, options.noise.contact, CONFIDENCE) {
@@ -350,6 +351,18 @@ fn misread(log: &ContactLog, estimate: &ContactEstimate) -> Option<String> {
         "{} contacts are off by far more than noise and than those around them allow (the first at t = {} s on palm {}): they count as where \
          those around them say, and bound nothing.",
         estimate.misread.len(),
+        log.times()[sample],
+        palm + 1
+    ))
+}
+
+/// The same of forces.
+fn misread_forces(log: &ContactLog, estimate: &ContactEstimate) -> Option<String> {
+    let &(sample, palm) = estimate.misread_forces.first()?;
+    Some(format!(
+        "{} forces are no readings: those around them are others, and no contact shows what they would do (the first at t = {} s on palm {}). They \
+         count as those around them say.",
+        estimate.misread_forces.len(),
         log.times()[sample],
         palm + 1
     ))

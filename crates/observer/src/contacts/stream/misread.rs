@@ -4,8 +4,8 @@
 //! contacts as they come, where one that is off by a fifth of the size turns the body as the noise of thousands does.
 
 use super::sample::{Contacts, Felt};
-use crate::contacts::outliers::{FEWEST, MEDIAN_LENGTH, MOST, OFF, TOGETHER};
 use crate::contacts::record::{Contact, add_contact_noise};
+use crate::contacts::way::{FEWEST, MEDIAN_LENGTH, MOST, OFF, TOGETHER};
 use glam::{DMat3, DVec3};
 use object_dynamics::MOST_PALMS;
 

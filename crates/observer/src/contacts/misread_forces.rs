@@ -1,0 +1,100 @@
+//! Forces that are off at a sample or two while the motion knows nothing of it: a sensor's misreadings, put where the forces around say.
+//!
+//! A force that is as large throws the centre of mass, and bends the way of the contacts. Where noise hides how far, it is left as it is: a motion hardly depends on
+//! it then, or contradicts it.
+
+use super::outliers::{is_repeated, is_steady, way};
+use super::record::Contact;
+use super::way::{Told, Way};
+use glam::DVec3;
+
+/// Share of what a force would throw the centre of mass by, up to which contacts show nothing of it.
+const SHOWN: f64 = 0.1;
+/// Of a change of the slope at a sample, over the time between samples: what a cubic through two values on either side leaves of the value.
+const OF_KINK: f64 = 1.0 / 3.0;
+/// Samples on either side that a misread contact may bend the way of others from, which are not asked then.
+const DEVIATIONS: f64 = 4.0;
+
+/// A force that is off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MisreadForce {
+    pub(super) sample: usize,
+    /// From 0.
+    pub(super) palm: usize,
+    /// What those around it say that it is, N.
+    f: DVec3,
+}
+
+/// Forces of palms that are read at samples, by these. `deviation` is that of a contact, m, `gravity` in m/s^2.
+pub(super) fn misread_forces(
+    contacts: &[Vec<Contact>],
+    times: &[f64],
+    sampled: &[bool],
+    deviation: f64,
+    gravity: f64,
+) -> Vec<MisreadForce> {
+    let whole: DVec3 = contacts.iter().flatten().map(|contact| contact.f).sum();
+    let mass = whole.length() / times.len() as f64 / gravity;
+    if !(mass > 0.0) {
+        return Vec::new();
+    }
+    let still = vec![0.0; times.len()];
+    let bends: Vec<f64> = {
+        let ways: Vec<Way> = (0..sampled.len()).map(|palm| way(contacts, times, palm, &still)).collect();
+        bends(&ways, times.len())
+    };
+    let mut all = Vec::new();
+    for palm in (0..sampled.len()).filter(|&palm| sampled[palm]) {
+        let (way, noise) = forces(contacts, times, palm);
+        let off = way.off(noise);
+        all.extend(off.into_iter().filter_map(|(j, Told { value, .. })| {
+            let k = way.samples[j];
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
+            let h = 0.5 * (times[after] - times[before]);
+            let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
+            let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
+            let shown = DEVIATIONS * deviation + bends[k];
+            let repeated = is_repeated(contacts, k, palm);
+            (repeated || shown < SHOWN * thrown).then_some(MisreadForce { sample: k, palm, f: value })
+        }));
+    }
+    all.sort_unstable_by_key(|of| (of.sample, of.palm));
+    all
+}
+
+/// How far the contacts of a sample are from where those around them say, m: the farthest.
+fn bends(ways: &[Way], count: usize) -> Vec<f64> {
+    let mut all = vec![0.0f64; count];
+    for way in ways {
+        let out = vec![false; way.samples.len()];
+        for (j, &k) in way.samples.iter().enumerate() {
+            let left = way.told(j, &out).map_or(f64::INFINITY, |told| way.left(j, &told));
+            all[k] = all[k].max(left);
+        }
+    }
+    all
+}
+
+/// Forces of a palm, and the deviation of one, N.
+fn forces(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> (Way, f64) {
+    let mut way = Way::default();
+    let mut noise = 0.0;
+    for k in 0..contacts.len() {
+        if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
+            let judged = [is_steady(contacts, k), is_repeated(contacts, k, palm)];
+            way.add((k, times[k]), contact.f, 0.0, judged);
+            noise += contact.f_deviation;
+        }
+    }
+    let count = way.samples.len().max(1);
+    (way, noise / count as f64)
+}
+
+/// Makes them what those around them say.
+pub(super) fn mend_forces(contacts: &mut [Vec<Contact>], misread: &[MisreadForce]) {
+    for &MisreadForce { sample, palm, f } in misread {
+        for contact in contacts[sample].iter_mut().filter(|contact| contact.palm == palm) {
+            contact.f = f;
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! How a reading of a palm goes on from sample to sample, and which of its values leave that way.
+
+use glam::DVec3;
+
+/// Deviations from which on a value is off: of what noise or, where that is more, the motion itself leaves of a cubic at most samples.
+pub(super) const OFF: f64 = 8.0;
+/// Values on either side that tell where one should be, and among how many samples they are looked for.
+const BESIDE: usize = 2;
+const AMONG: usize = 6;
+/// Samples on either side over which the same palms must be touched: a landing bends the way of all contacts.
+pub(super) const STEADY: usize = 3;
+/// Share of the spread of all values of a palm that one is off by at least: less harms nothing.
+const NOTABLE: f64 = 3e-4;
+/// Neighbours that may be off together: more are a motion that turns sharply.
+pub(super) const TOGETHER: usize = 2;
+/// Share of a palm's values beyond which they are not outliers but what the sensor is like.
+pub(super) const MOST: f64 = 0.05;
+/// Root of one and the squared weights of a cubic through two values on either side, evenly spaced: noise of what a value is off it by over that of one.
+const OF_CUBIC: f64 = 1.394;
+/// Fewest values of a palm whose scatter can be told.
+pub(super) const FEWEST: usize = 20;
+/// Median of the length of a vector of two standard normal numbers.
+pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
+
+/// What others say that a value is, in its units, and the sum of the squares of what they count by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Told {
+    pub(super) value: DVec3,
+    pub(super) squares: f64,
+}
+
+/// Values of a reading of a palm.
+#[derive(Default)]
+pub(super) struct Way {
+    pub(super) samples: Vec<usize>,
+    times: Vec<f64>,
+    points: Vec<DVec3>,
+    /// What the motion may leave of them.
+    bends: Vec<f64>,
+    /// Whether one may be judged by those around it.
+    steady: Vec<bool>,
+    /// Whether the palm gave all that it gave the sample before, to the last digit.
+    repeated: Vec<bool>,
+}
+
+impl Way {
+    /// Adds the value of a sample, in order of time (s). The motion may leave `bend` of it; it is judged only where it is `steady`, and is no reading
+    /// where it is `repeated`.
+    pub(super) fn add(
+        &mut self,
+        (sample, time): (usize, f64),
+        value: DVec3,
+        bend: f64,
+        [steady, repeated]: [bool; 2],
+    ) {
+        self.samples.push(sample);
+        self.times.push(time);
+        self.points.push(value);
+        self.bends.push(bend);
+        self.steady.push(steady);
+        self.repeated.push(repeated);
+    }
+
+    /// Whether each value is the one before once more, while those before and after it change: none is where many are.
+    fn stale(&self) -> Vec<bool> {
+        let count = self.points.len();
+        let changes = |j: usize| j + 1 < count && self.points[j] != self.points[j + 1];
+        let one = |j: usize| self.repeated[j] && self.steady[j] && j > 1 && changes(j) && changes(j - 2);
+        let all: Vec<bool> = (0..count).map(one).collect();
+        let many = all.iter().filter(|stale| **stale).count() as f64 > MOST * count as f64;
+        if many { vec![false; count] } else { all }
+    }
+
+    /// Numbers of the values that are off, and what they should be; `deviation` is that of one.
+    pub(super) fn off(&self, deviation: f64) -> Vec<(usize, Told)> {
+        let count = self.points.len();
+        if count < FEWEST {
+            return Vec::new();
+        }
+        let mean = self.points.iter().sum::<DVec3>() / count as f64;
+        let square = self.points.iter().map(|point| point.distance_squared(mean)).sum::<f64>();
+        let least = deviation.max(NOTABLE / OFF * (square / count as f64).sqrt());
+        let limit = |left: &[f64]| {
+            let mut scatter: Vec<f64> = left.iter().copied().filter(|left| *left > 0.0).collect();
+            scatter.sort_by(f64::total_cmp);
+            let usual = scatter.get(scatter.len() / 2).map_or(f64::INFINITY, |median| median / MEDIAN_LENGTH);
+            OFF * usual.max(least)
+        };
+        // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
+        let left: Vec<f64> = (0..count).map(|j| self.points[j].distance(self.usual(j))).collect();
+        let most = limit(&left);
+        let stale = self.stale();
+        let suspected: Vec<bool> = (0..count).map(|j| stale[j] || self.steady[j] && left[j] > most).collect();
+        let left: Vec<f64> =
+            (0..count).map(|j| self.told(j, &suspected).map_or(0.0, |told| self.left(j, &told))).collect();
+        let most = limit(&left);
+        let is_off = |&j: &usize| {
+            let limit = most + self.bends[j];
+            stale[j] || suspected[j] && left[j] > limit && !self.goes_on(j, OF_CUBIC * limit)
+        };
+        let off: Vec<usize> = (0..count).filter(is_off).collect();
+        let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
+        let off: Vec<_> = together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?))).collect();
+        if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
+    }
+
+    /// The median of the values around one, at an end carried on to it by the slope of medians.
+    fn usual(&self, j: usize) -> DVec3 {
+        let inner = |j: usize| j.clamp(STEADY, self.points.len() - 1 - STEADY);
+        let centre = inner(j);
+        let median = self.median(centre);
+        if centre == j {
+            return median;
+        }
+        let further = inner(2 * centre - j);
+        let share = (j as f64 - centre as f64) / (further as f64 - centre as f64);
+        median + (self.median(further) - median) * share
+    }
+
+    /// The median of each coordinate.
+    fn median(&self, centre: usize) -> DVec3 {
+        let around = &self.points[centre - STEADY..=centre + STEADY];
+        let of = |axis: usize| {
+            let mut values: Vec<f64> = around.iter().map(|point| point[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        DVec3::new(of(0), of(1), of(2))
+    }
+
+    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three;
+    /// where there is a fourth, by that with it in place of the third as well: a third that is off by as much as this one leads to it.
+    ///
+    /// Where the curvature of the object jumps, its contact changes its speed from one sample to the next: nothing that is smooth over both sides leads there.
+    fn goes_on(&self, j: usize, within: f64) -> bool {
+        let near = |other: &usize| self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
+        // Those that may be off themselves as well: so few in a row lead to no other one.
+        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
+        let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
+        let leads = |few: &[usize]| self.through(few, j).0.distance(self.points[j]) <= within;
+        [&before[..], &after].iter().any(|side| match *side {
+            [a, b, c, d, ..] => leads(&[*a, *b]) || (leads(&[*a, *b, *c]) && leads(&[*a, *b, *d])),
+            [a, b, c] => leads(&[*a, *b]) || leads(&[*a, *b, *c]),
+            [a, b] => leads(&[*a, *b]),
+            _ => false,
+        })
+    }
+
+    /// The polynomial through some contacts at the time of another one, and its weights.
+    fn through(&self, beside: &[usize], j: usize) -> (DVec3, Vec<f64>) {
+        let weight = |i: &usize| -> f64 {
+            let others = beside.iter().filter(|other| *other != i);
+            others
+                .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
+                .product()
+        };
+        let weights: Vec<f64> = beside.iter().map(weight).collect();
+        (beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum(), weights)
+    }
+
+    /// By how many metres of unit noise a contact is elsewhere than it is told.
+    pub(super) fn left(&self, j: usize, told: &Told) -> f64 {
+        told.value.distance(self.points[j]) / (1.0 + told.squares).sqrt()
+    }
+
+    /// Where the cubic through the contacts beside one leads, at an end the parabola; those that are `out` say nothing. None with too few of them.
+    pub(super) fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
+        let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
+        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
+        let after: Vec<usize> =
+            (j + 1..self.points.len()).take(AMONG).filter(near).take(2 * BESIDE).collect();
+        // At an end more of them on one side; a cubic that leads beyond all of them has eight times the noise of one.
+        let most = if before.is_empty() || after.is_empty() { 2 * BESIDE - 1 } else { 2 * BESIDE };
+        let from_before = before.len().min(most.saturating_sub(after.len()).max(BESIDE));
+        let from_after = after.len().min(most - from_before);
+        if from_before + from_after < most {
+            return None;
+        }
+        let beside: Vec<usize> =
+            before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
+        let (value, weights) = self.through(&beside, j);
+        Some(Told { value, squares: weights.iter().map(|weight| weight * weight).sum() })
+    }
+}
