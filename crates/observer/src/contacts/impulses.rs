@@ -220,6 +220,7 @@ mod tests {
             samples: 1.0,
             J_before: DVec3::ZERO,
             J_after: DVec3::ZERO,
+            repeated: false,
         }
     }
 

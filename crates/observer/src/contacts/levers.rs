@@ -25,17 +25,19 @@ const LEAST: f64 = 0.05;
 /// Share of a direction's information, products of two taken for none, that such a direction must have of its own among those that are looked for.
 const OWN: f64 = 1e-9;
 
-type Spin = Vector3<f64>;
+pub(super) type Spin = Vector3<f64>;
 
 /// Noise of levers at the nodes of a chain, and what turns its motions.
-struct Levers {
+pub(super) struct Levers {
     /// Of each contact, its node and what it adds to the information on the angular velocity there.
-    noise: Vec<(usize, Matrix3<f64>)>,
+    each: Vec<(usize, Matrix3<f64>)>,
+    /// The same of all contacts of a node.
+    at_nodes: Vec<Matrix3<f64>>,
     spins: Vec<(SMatrix<f64, 3, MOTION>, SMatrix<f64, 3, INERTIA>)>,
 }
 
 impl Levers {
-    fn new(problem: &Problem, at: &Unknowns) -> Self {
+    pub(super) fn new(problem: &Problem, at: &Unknowns) -> Self {
         let mut all = Vec::new();
         for (j, motion) in at.motions.iter().enumerate() {
             let turn = at.body.turn(motion.q, motion.L);
@@ -50,7 +52,9 @@ impl Levers {
             }
         }
         let spins = at.motions.iter().map(|motion| motion.spin_derivatives(&at.body)).collect();
-        Self { noise: all, spins }
+        let mut at_nodes = vec![Matrix3::zeros(); at.motions.len()];
+        all.iter().for_each(|(j, noise)| at_nodes[*j] += noise);
+        Self { each: all, at_nodes, spins }
     }
 
     /// Changes of the angular velocities by a step.
@@ -65,26 +69,84 @@ impl Levers {
 
     /// What noise adds to the information times changes of the angular velocities, as half a gradient against them.
     fn against(&self, turned: &[Spin]) -> Gradient<CONSTANTS> {
-        let mut pulls = vec![Spin::zeros(); self.spins.len()];
-        for (j, noise) in &self.noise {
-            pulls[*j] -= noise * turned[*j];
-        }
         let mut body = SVector::<f64, CONSTANTS>::zeros();
-        let mut motions = Vec::with_capacity(pulls.len());
-        for ((by_motion, by_body), pull) in self.spins.iter().zip(&pulls) {
-            motions.push(by_motion.tr_mul(pull));
+        let mut motions = Vec::with_capacity(turned.len());
+        for (((by_motion, by_body), noise), turned) in self.spins.iter().zip(&self.at_nodes).zip(turned) {
+            let pull = noise * -turned;
+            motions.push(by_motion.tr_mul(&pull));
             let mut inertia = body.fixed_rows_mut::<INERTIA>(1);
-            inertia += by_body.tr_mul(pull);
+            inertia += by_body.tr_mul(&pull);
         }
         Gradient { motions, body }
     }
 
+    /// Directions of which noise adds most to the information, independent of each other.
+    pub(super) fn most_claimed(&self, at: &Unknowns, reduced: &Reduced<CONSTANTS>) -> Vec<Claimed> {
+        let start = |i: usize| -> Vec<Spin> {
+            let axis = DVec3::AXES[i % 3];
+            at.motions.iter().map(|motion| Spin::from(if i < 3 { axis } else { motion.q * axis })).collect()
+        };
+        let mut turned: Vec<Vec<Spin>> = (0..SOUGHT).map(start).collect();
+        let mut steps = Vec::new();
+        for _ in 0..ROUNDS {
+            steps = self.more_claimed(reduced, &turned);
+            turned = steps.iter().map(|step| self.turned(step)).collect();
+        }
+        let one = |(step, turned): (_, &Vec<Spin>)| {
+            let (added, chance) = self.added(turned);
+            Claimed { step, left: 1.0 - added - CHANCE * chance }
+        };
+        steps.into_iter().zip(&turned).map(one).collect()
+    }
+
+    /// Steps of unit information, independent of each other, in the space of those that the equations make of what noise adds to these changes.
+    fn more_claimed(&self, reduced: &Reduced<CONSTANTS>, turned: &[Vec<Spin>]) -> Vec<Step<CONSTANTS>> {
+        let pulls: Vec<_> = turned.iter().map(|turned| self.against(turned)).collect();
+        let steps: Vec<_> = pulls.iter().map(|pull| reduced.step(pull)).collect();
+        let count = steps.len();
+        // A step is the inverse of the information times its pull.
+        let shared = |i: usize, k: usize| -0.5 * (pulls[i].dot(&steps[k]) + pulls[k].dot(&steps[i]));
+        let lengths: Vec<f64> = (0..count).map(|i| shared(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
+        let cosines =
+            nalgebra::DMatrix::from_fn(count, count, |i, k| shared(i, k) / (lengths[i] * lengths[k]));
+        let eigen = SymmetricEigen::new(cosines);
+        let own = (0..count).filter(|&m| eigen.eigenvalues[m] > OWN);
+        let basis: Vec<_> = own
+            .map(|m| {
+                let root = eigen.eigenvalues[m].sqrt();
+                sum(&steps, |i| eigen.eigenvectors[(i, m)] / (lengths[i] * root))
+            })
+            .collect();
+        if basis.is_empty() {
+            return basis;
+        }
+        let turned: Vec<_> = basis.iter().map(|step| self.turned(step)).collect();
+        let pulls: Vec<_> = turned.iter().map(|turned| self.against(turned)).collect();
+        let claimed = nalgebra::DMatrix::from_fn(basis.len(), basis.len(), |i, k| {
+            -0.5 * (pulls[i].dot(&basis[k]) + pulls[k].dot(&basis[i]))
+        });
+        let eigen = SymmetricEigen::new(claimed);
+        (0..basis.len()).map(|m| sum(&basis, |i| eigen.eigenvectors[(i, m)])).collect()
+    }
+
     /// What noise adds along changes of the angular velocities on average, and the deviation of that.
-    fn added(&self, turned: &[Spin]) -> (f64, f64) {
-        let each = self.noise.iter().map(|(j, noise)| turned[*j].dot(&(noise * turned[*j])));
+    pub(super) fn added(&self, turned: &[Spin]) -> (f64, f64) {
+        let each = self.each.iter().map(|(j, noise)| turned[*j].dot(&(noise * turned[*j])));
         let (sum, squares) = each.fold((0.0, 0.0), |(sum, squares), of| (sum + of, squares + of * of));
         (sum, (2.0 * squares).sqrt())
     }
+}
+
+/// A direction of unit information of which noise of levers may make much.
+pub(super) struct Claimed {
+    pub(super) step: Step<CONSTANTS>,
+    /// Share of the information that is there without it, at the least that chance leaves likely: it may be negative.
+    pub(super) left: f64,
+}
+
+/// Angular velocities at the nodes.
+pub(super) fn spins(at: &Unknowns) -> Vec<Spin> {
+    at.motions.iter().map(|motion| at.body.spin(motion.q, motion.L).into()).collect()
 }
 
 /// Steps of independent errors beside those that the equations claim: along directions of which noise of contacts poses as information; and the
@@ -95,51 +157,12 @@ pub(super) fn errors_of_levers(problem: &Problem, solved: &Solved<CONSTANTS>) ->
         return Vec::new();
     };
     let levers = Levers::new(problem, at);
-    let start = |i: usize| -> Vec<Spin> {
-        let axis = DVec3::AXES[i % 3];
-        at.motions.iter().map(|motion| Spin::from(if i < 3 { axis } else { motion.q * axis })).collect()
-    };
-    let mut turned: Vec<Vec<Spin>> = (0..SOUGHT).map(start).collect();
-    let mut steps = Vec::new();
-    for _ in 0..ROUNDS {
-        steps = most_claimed(&levers, &reduced, &turned);
-        turned = steps.iter().map(|step| levers.turned(step)).collect();
-    }
-    let wider = |(step, turned): (&Step<CONSTANTS>, &Vec<Spin>)| {
-        let (added, chance) = levers.added(turned);
-        let left = (1.0 - added - CHANCE * chance).clamp(LEAST, 1.0);
-        step.scaled((left.powi(-2) - 1.0).sqrt())
-    };
-    let mut errors: Vec<_> = steps.iter().zip(&turned).map(wider).collect();
-    let spins: Vec<Spin> = at.motions.iter().map(|motion| at.body.spin(motion.q, motion.L).into()).collect();
-    errors.push(reduced.step(&levers.against(&spins)));
+    let claimed = levers.most_claimed(at, &reduced);
+    let wider =
+        |Claimed { step, left }: &Claimed| step.scaled((left.clamp(LEAST, 1.0).powi(-2) - 1.0).sqrt());
+    let mut errors: Vec<_> = claimed.iter().map(wider).collect();
+    errors.push(reduced.step(&levers.against(&spins(at))));
     errors
-}
-
-/// Steps of unit information, independent of each other, in the space of those that the equations make of what noise adds to these changes.
-fn most_claimed(levers: &Levers, reduced: &Reduced<CONSTANTS>, turned: &[Vec<Spin>]) -> Vec<Step<CONSTANTS>> {
-    let pulls: Vec<_> = turned.iter().map(|turned| levers.against(turned)).collect();
-    let steps: Vec<_> = pulls.iter().map(|pull| reduced.step(pull)).collect();
-    let count = steps.len();
-    // A step is the inverse of the information times its pull.
-    let shared = |i: usize, k: usize| -0.5 * (pulls[i].dot(&steps[k]) + pulls[k].dot(&steps[i]));
-    let lengths: Vec<f64> = (0..count).map(|i| shared(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
-    let cosines = nalgebra::DMatrix::from_fn(count, count, |i, k| shared(i, k) / (lengths[i] * lengths[k]));
-    let eigen = SymmetricEigen::new(cosines);
-    let own = (0..count).filter(|&m| eigen.eigenvalues[m] > OWN);
-    let basis: Vec<_> = own
-        .map(|m| {
-            let root = eigen.eigenvalues[m].sqrt();
-            sum(&steps, |i| eigen.eigenvectors[(i, m)] / (lengths[i] * root))
-        })
-        .collect();
-    let turned: Vec<_> = basis.iter().map(|step| levers.turned(step)).collect();
-    let pulls: Vec<_> = turned.iter().map(|turned| levers.against(turned)).collect();
-    let claimed = nalgebra::DMatrix::from_fn(basis.len(), basis.len(), |i, k| {
-        -0.5 * (pulls[i].dot(&basis[k]) + pulls[k].dot(&basis[i]))
-    });
-    let eigen = SymmetricEigen::new(claimed);
-    (0..basis.len()).map(|m| sum(&basis, |i| eigen.eigenvectors[(i, m)])).collect()
 }
 
 /// With weights.

@@ -3,16 +3,16 @@
 //! A force that is as large throws the centre of mass, and bends the way of the contacts. Where noise hides how far, it is left as it is: a motion hardly depends on
 //! it then, or contradicts it.
 
-use super::outliers::{is_repeated, is_steady, way};
+use super::outliers::{is_steady, way};
 use super::record::Contact;
-use super::way::{Told, Way};
+use super::way::{Off, Told, Way};
 use glam::DVec3;
 
 /// Share of what a force would throw the centre of mass by, up to which contacts show nothing of it.
 const SHOWN: f64 = 0.1;
 /// Of a change of the slope at a sample, over the time between samples: what a cubic through two values on either side leaves of the value.
 const OF_KINK: f64 = 1.0 / 3.0;
-/// Samples on either side that a misread contact may bend the way of others from, which are not asked then.
+/// Deviations of a contact that its noise may hide.
 const DEVIATIONS: f64 = 4.0;
 
 /// A force that is off.
@@ -23,6 +23,8 @@ pub(super) struct MisreadForce {
     pub(super) palm: usize,
     /// What those around it say that it is, N.
     f: DVec3,
+    /// By how much they are others than what those around them say, N.
+    around: f64,
 }
 
 /// Forces of palms that are read at samples, by these. `deviation` is that of a contact, m, `gravity` in m/s^2.
@@ -46,17 +48,21 @@ pub(super) fn misread_forces(
     let mut all = Vec::new();
     for palm in (0..sampled.len()).filter(|&palm| sampled[palm]) {
         let (way, noise) = forces(contacts, times, palm);
-        let off = way.off(noise);
-        all.extend(off.into_iter().filter_map(|(j, Told { value, .. })| {
-            let k = way.samples[j];
-            let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
-            let h = 0.5 * (times[after] - times[before]);
-            let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
-            let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
-            let shown = DEVIATIONS * deviation + bends[k];
-            let repeated = is_repeated(contacts, k, palm);
-            (repeated || shown < SHOWN * thrown).then_some(MisreadForce { sample: k, palm, f: value })
-        }));
+        all.extend(way.off(noise).into_iter().filter_map(
+            |Off { sample: k, told: Told { value, .. }, around }| {
+                let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
+                let h = 0.5 * (times[after] - times[before]);
+                let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
+                let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
+                let shown = DEVIATIONS * deviation + bends[k];
+                (read.repeated || shown < SHOWN * thrown).then_some(MisreadForce {
+                    sample: k,
+                    palm,
+                    f: value,
+                    around,
+                })
+            },
+        ));
     }
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
     all
@@ -81,7 +87,7 @@ fn forces(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> (Way, f64) {
     let mut noise = 0.0;
     for k in 0..contacts.len() {
         if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
-            let judged = [is_steady(contacts, k), is_repeated(contacts, k, palm)];
+            let judged = [is_steady(contacts, k), contact.repeated];
             way.add((k, times[k]), contact.f, 0.0, judged);
             noise += contact.f_deviation;
         }
@@ -92,9 +98,10 @@ fn forces(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> (Way, f64) {
 
 /// Makes them what those around them say.
 pub(super) fn mend_forces(contacts: &mut [Vec<Contact>], misread: &[MisreadForce]) {
-    for &MisreadForce { sample, palm, f } in misread {
+    for &MisreadForce { sample, palm, f, around } in misread {
         for contact in contacts[sample].iter_mut().filter(|contact| contact.palm == palm) {
             contact.f = f;
+            contact.f_deviation = contact.f_deviation.max(around);
         }
     }
 }

@@ -39,6 +39,7 @@ mod drawn;
 mod elimination;
 mod equations;
 mod estimate;
+mod expected;
 mod explanations;
 mod feet;
 mod first;

@@ -1,7 +1,7 @@
 //! Contacts that are off by far more than noise at one sample, or a few: a sensor's misreadings, put where the contacts around say.
 
 use super::record::Contact;
-use super::way::{STEADY, Told, Way};
+use super::way::{Off, STEADY, Told, Way};
 use glam::DVec3;
 
 /// Times what a peak of the force between samples moves the centre of mass by, that it may move a contact: that rolls, and the body turns too.
@@ -32,14 +32,13 @@ pub(super) fn misread(
     let mut all = Vec::new();
     for palm in 0..palms {
         let way = way(contacts, times, palm, &bends);
-        let off = way.off(deviation);
-        let one = |(j, Told { value, squares }): (usize, Told)| Misread {
-            sample: way.samples[j],
-            palm,
-            c: value,
-            samples: squares.recip(),
+        let one = |Off { sample, told: Told { value, squares }, around }: Off| {
+            // As good as what it is told by, and no better than what that leaves of those around it.
+            let as_around =
+                if around > 0.0 && deviation > 0.0 { (deviation / around).powi(2) } else { f64::INFINITY };
+            Misread { sample, palm, c: value, samples: squares.recip().min(as_around) }
         };
-        all.extend(off.into_iter().map(one));
+        all.extend(way.off(deviation).into_iter().map(one));
     }
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
     all
@@ -78,7 +77,7 @@ pub(super) fn way(contacts: &[Vec<Contact>], times: &[f64], palm: usize, bends: 
     for k in 0..contacts.len() {
         if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
             let flat = contact.shape == glam::DMat3::ZERO;
-            let judged = [is_steady(contacts, k) && flat, is_repeated(contacts, k, palm)];
+            let judged = [is_steady(contacts, k) && flat, contact.repeated];
             way.add((k, times[k]), contact.c, bends[k], judged);
         }
     }
@@ -90,13 +89,6 @@ pub(super) fn is_steady(contacts: &[Vec<Contact>], k: usize) -> bool {
     let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
     let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
     around.into_iter().all(|other| touched(other).eq(touched(k)))
-}
-
-/// Whether a palm gave what it gave the sample before, to the last digit.
-pub(super) fn is_repeated(contacts: &[Vec<Contact>], k: usize, palm: usize) -> bool {
-    let of = |k: usize| contacts[k].iter().find(|contact| contact.palm == palm);
-    let same = |before: usize| of(before).zip(of(k)).is_some_and(|(a, b)| a.c == b.c && a.f == b.f);
-    k.checked_sub(1).is_some_and(same)
 }
 
 #[cfg(test)]
@@ -134,6 +126,7 @@ pub(super) mod tests {
                 samples: 1.0,
                 J_before: DVec3::ZERO,
                 J_after: DVec3::ZERO,
+                repeated: false,
             }]
         };
         (0..60).map(one).collect()

@@ -51,6 +51,8 @@ pub(super) struct Contact {
     /// Impulses through it before and after its sample, N s, whose moments are off by what it is read beside where it is.
     pub(super) J_before: DVec3,
     pub(super) J_after: DVec3,
+    /// Whether the palm gave what it gave the sample before, to the last digit.
+    pub(super) repeated: bool,
 }
 
 /// Forces of all palms and their moments about the origin, or an integral of them.
@@ -127,6 +129,7 @@ impl Contact {
             samples: 1.0,
             J_before: DVec3::ZERO,
             J_after: DVec3::ZERO,
+            repeated: false,
         }
     }
 
@@ -351,7 +354,15 @@ fn contacts_at(
         // All in one plane, about which they scatter by noise alone.
         let c = felt.c - origin;
         let u_deviation = missed[palm].at(felt.c.distance(motion.pose.p_WP));
-        Some(Contact { u_deviation, c: if options.planar { c.with_y(0.0) } else { c }, ..felt })
+        // A contact that was read is put on the palm where that is now: what repeats itself is the force.
+        let repeated = k.checked_sub(1).is_some_and(|before| {
+            let along = |k: usize| Some(logged.force(k)?.vector.dot(logged.touch(k)?.n.get()));
+            let vector = |k: usize| logged.force(k).map(|force| force.vector);
+            // A part along a normal has been a vector in between.
+            let same = |(last, own): (f64, f64)| (last - own).abs() <= 4.0 * f64::EPSILON * own.abs();
+            vector(before) == vector(k) || along(before).zip(along(k)).is_some_and(same)
+        });
+        Some(Contact { u_deviation, c: if options.planar { c.with_y(0.0) } else { c }, repeated, ..felt })
     };
     log.palms().iter().enumerate().filter_map(one).collect()
 }

@@ -6,10 +6,11 @@
 
 use super::body::{Body, CONSTANTS};
 use super::cold;
+use super::expected::{as_expected, held_as_expected};
 use super::problem::{Problem, Unknowns};
 use super::redrawn::SMALL;
 use super::samples::deviations;
-use super::search::{ENOUGH, fine_within, of_ball};
+use super::search::{ENOUGH, fine_within};
 use super::solve::{Covariances, Solved, solve};
 use super::surprise::surprise;
 use crate::random::Normal;
@@ -77,6 +78,7 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
     }
     let mut all = vec![Weighed::of(problem, found)];
     let mut best = 0;
+    let mut expected = None;
     for _ in 0..SEARCHES {
         let (solved, frozen) = &all[best].rival;
         problem.frozen.clone_from(frozen);
@@ -89,7 +91,8 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         if !problem.planar && all.len() == 1 && is_short(problem) && is_unsure(problem, solved) {
             starts.extend(flung(problem));
         }
-        starts.extend(as_expected(problem, &found));
+        expected = as_expected(problem, &found);
+        starts.extend(expected.clone());
         for start in starts {
             problem.frozen.clear();
             let so_far = [before, best].map(|i| &all[i].rival.0);
@@ -105,6 +108,12 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         if best == before || problem.planar || well_known(problem, &all[best].rival.0) {
             break;
         }
+    }
+    let held = expected.and_then(|start| held_as_expected(problem, &all[best].rival, start));
+    if let Some((held, combinations)) = held {
+        problem.frozen = combinations;
+        best = all.len();
+        all.push(Weighed::of(problem, held));
     }
     let best = all.swap_remove(best);
     problem.frozen.clone_from(&best.rival.1);
@@ -238,16 +247,6 @@ fn starts(problem: &Problem, found: &Unknowns, body: Body) -> Vec<Unknowns> {
     let along = |shift: f64| DVec3::AXES.map(|axis| [axis * shift, axis * -shift]);
     let shifts = SHIFTED.into_iter().flat_map(along).flatten();
     shifts.map(|shift| cold::shifted(problem, found, body, shift * rate)).collect()
-}
-
-/// The motion of a body whose inertia is nearly what was expected before the log was read: noise alone can pull one that hardly shows far from
-/// there, to a spin that leaves less and is far less probable. None in the plane.
-fn as_expected(problem: &mut Problem, found: &Unknowns) -> Option<Unknowns> {
-    if problem.planar {
-        return None;
-    }
-    problem.frozen.clear();
-    Some(of_ball(problem, found.with(problem.body.0))?.unknowns)
 }
 
 /// Whether a log of an unknown body is one over which starts that differ much lead to motions that leave little.

@@ -22,7 +22,7 @@ const LEAST: f64 = 0.05;
 const INEXACT: f64 = 1e-6;
 const CLAIMED: f64 = 0.5;
 /// Share of the information that was there beforehand from which on a combination keeps its value by itself.
-const KEPT: f64 = 0.99;
+pub(super) const KEPT: f64 = 0.99;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 

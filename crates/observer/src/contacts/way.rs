@@ -9,8 +9,9 @@ const BESIDE: usize = 2;
 const AMONG: usize = 6;
 /// Samples on either side over which the same palms must be touched: a landing bends the way of all contacts.
 pub(super) const STEADY: usize = 3;
-/// Share of the spread of all values of a palm that one is off by at least: less harms nothing.
-const NOTABLE: f64 = 3e-4;
+/// Share of the spread of all values of a palm that one is off by at least: at 3e-4 two of 24 logs as good as exact had right contacts put elsewhere, where an
+/// object turns within a sample or two.
+const NOTABLE: f64 = 3e-3;
 /// Neighbours that may be off together: more are a motion that turns sharply.
 pub(super) const TOGETHER: usize = 2;
 /// Share of a palm's values beyond which they are not outliers but what the sensor is like.
@@ -27,6 +28,16 @@ pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
 pub(super) struct Told {
     pub(super) value: DVec3,
     pub(super) squares: f64,
+}
+
+/// A value that is off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Off {
+    pub(super) sample: usize,
+    /// What others say that it is.
+    pub(super) told: Told,
+    /// How far the same puts values around it from what they are, at most.
+    pub(super) around: f64,
 }
 
 /// Values of a reading of a palm.
@@ -71,20 +82,20 @@ impl Way {
         if many { vec![false; count] } else { all }
     }
 
-    /// Numbers of the values that are off, and what they should be; `deviation` is that of one.
-    pub(super) fn off(&self, deviation: f64) -> Vec<(usize, Told)> {
+    /// The values that are off; `deviation` is that of one.
+    pub(super) fn off(&self, deviation: f64) -> Vec<Off> {
         let count = self.points.len();
         if count < FEWEST {
             return Vec::new();
         }
         let mean = self.points.iter().sum::<DVec3>() / count as f64;
         let square = self.points.iter().map(|point| point.distance_squared(mean)).sum::<f64>();
-        let least = deviation.max(NOTABLE / OFF * (square / count as f64).sqrt());
+        let spread = (square / count as f64).sqrt();
         let limit = |left: &[f64]| {
             let mut scatter: Vec<f64> = left.iter().copied().filter(|left| *left > 0.0).collect();
             scatter.sort_by(f64::total_cmp);
             let usual = scatter.get(scatter.len() / 2).map_or(f64::INFINITY, |median| median / MEDIAN_LENGTH);
-            OFF * usual.max(least)
+            OFF * usual.max(deviation).max(NOTABLE / OFF * spread)
         };
         // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
         let left: Vec<f64> = (0..count).map(|j| self.points[j].distance(self.usual(j))).collect();
@@ -100,8 +111,25 @@ impl Way {
         };
         let off: Vec<usize> = (0..count).filter(is_off).collect();
         let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
-        let off: Vec<_> = together.flatten().filter_map(|&j| Some((j, self.told(j, &suspected)?))).collect();
+        let one = |&j: &usize| {
+            let told = self.told(j, &suspected)?;
+            Some(Off { sample: self.samples[j], told, around: self.around(j, &suspected) })
+        };
+        let off: Vec<_> = together.flatten().filter_map(one).collect();
         if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
+    }
+
+    /// How far values around one are, at most, from what others as far from them as those that tell of this one say.
+    fn around(&self, j: usize, suspected: &[bool]) -> f64 {
+        let by = self.beside(j, suspected);
+        let near = j.saturating_sub(AMONG)..(j + AMONG + 1).min(suspected.len());
+        let one = |i: usize| {
+            let moved: Option<Vec<usize>> = by.iter().map(|&other| (other + i).checked_sub(j)).collect();
+            let moved = moved.filter(|moved| moved.iter().all(|&m| m < suspected.len() && !suspected[m]))?;
+            let (value, weights) = self.through(&moved, i);
+            Some(self.left(i, &Told { value, squares: weights.iter().map(|of| of * of).sum() }))
+        };
+        near.filter(|&i| !suspected[i]).filter_map(one).fold(0.0, f64::max)
     }
 
     /// The median of the values around one, at an end carried on to it by the slope of medians.
@@ -163,8 +191,18 @@ impl Way {
         told.value.distance(self.points[j]) / (1.0 + told.squares).sqrt()
     }
 
-    /// Where the cubic through the contacts beside one leads, at an end the parabola; those that are `out` say nothing. None with too few of them.
+    /// What the cubic through the values beside one leads to, at an end the parabola; those that are `out` say nothing. None with too few of them.
     pub(super) fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
+        let beside = self.beside(j, out);
+        if beside.is_empty() {
+            return None;
+        }
+        let (value, weights) = self.through(&beside, j);
+        Some(Told { value, squares: weights.iter().map(|weight| weight * weight).sum() })
+    }
+
+    /// The values beside one that tell what it is, less than all that are needed none.
+    fn beside(&self, j: usize, out: &[bool]) -> Vec<usize> {
         let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
         let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
         let after: Vec<usize> =
@@ -174,11 +212,8 @@ impl Way {
         let from_before = before.len().min(most.saturating_sub(after.len()).max(BESIDE));
         let from_after = after.len().min(most - from_before);
         if from_before + from_after < most {
-            return None;
+            return Vec::new();
         }
-        let beside: Vec<usize> =
-            before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect();
-        let (value, weights) = self.through(&beside, j);
-        Some(Told { value, squares: weights.iter().map(|weight| weight * weight).sum() })
+        before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect()
     }
 }
