@@ -89,7 +89,9 @@ impl Levers {
         let mut turned: Vec<Vec<Spin>> = (0..SOUGHT).map(start).collect();
         let mut steps = Vec::new();
         for _ in 0..ROUNDS {
-            steps = self.more_claimed(reduced, &turned);
+            if !turned.is_empty() {
+                steps = self.more_claimed(reduced, &turned);
+            }
             turned = steps.iter().map(|step| self.turned(step)).collect();
         }
         let one = |(step, turned): (_, &Vec<Spin>)| {

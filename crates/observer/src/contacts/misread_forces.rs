@@ -105,3 +105,30 @@ pub(super) fn mend_forces(contacts: &mut [Vec<Contact>], misread: &[MisreadForce
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::outliers::tests::run;
+    use super::*;
+
+    /// A force of seven weights at a sample that throws the contact is one; with a contact that knows nothing of it, it is none, and where noise of the contact hides what it would
+    /// do it stays.
+    #[test]
+    fn a_force_that_throws_a_contact_is_no_misreading() {
+        const STEP: f64 = 0.005;
+        const G: f64 = 9.81;
+        let (peak, throw) = (7.0, 6.0 * G * STEP);
+        let found = |throw: f64, deviation: f64| -> Vec<usize> {
+            let mut contacts = run(peak, throw, 0.0);
+            // Noise, as all that is judged is judged by its scatter.
+            for (k, contacts) in contacts.iter_mut().enumerate() {
+                contacts[0].f.z += 1e-3 * (5.1 * k as f64).sin();
+            }
+            let times: Vec<f64> = (0..contacts.len()).map(|k| k as f64 * STEP).collect();
+            misread_forces(&contacts, &times, &[true], deviation, G).iter().map(|of| of.sample).collect()
+        };
+        assert_eq!(found(throw, 2e-6), []);
+        assert_eq!(found(0.0, 2e-6), [30]);
+        assert_eq!(found(0.0, 2e-5), []);
+    }
+}

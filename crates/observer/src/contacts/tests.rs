@@ -17,6 +17,8 @@ mod handed_on;
 mod impulses;
 mod known;
 mod lasting;
+mod levers;
+mod misread_forces;
 mod mode_odds;
 mod poses;
 mod rough;

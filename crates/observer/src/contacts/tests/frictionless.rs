@@ -101,9 +101,18 @@ fn misread_contacts_are_told_and_survived() {
 }
 
 /// What an ellipsoid of a kilogram that is let go between three planes makes palms feel.
-fn tumbled(axes: DVec3, start: InitialMotion, times: SampleTimes) -> SensorLog {
+pub(super) fn tumbled(axes: DVec3, start: InitialMotion, times: SampleTimes) -> SensorLog {
+    tumbled_of(axes, MassProperties::uniform_ellipsoid(1.0, axes).unwrap(), start, times)
+}
+
+/// The same of one that need not be uniform.
+pub(super) fn tumbled_of(
+    axes: DVec3,
+    mass: MassProperties,
+    start: InitialMotion,
+    times: SampleTimes,
+) -> SensorLog {
     let palms = [60.0f64, 180.0, 300.0].map(|at| Palm::fixed(at.to_radians(), 60f64.to_radians()).unwrap());
-    let mass = MassProperties::uniform_ellipsoid(1.0, axes).unwrap();
     let scene = ThreePalmScene::new(Ellipsoid::new(axes).unwrap(), mass, palms, G).unwrap();
     scene.simulate(start, times, Tolerance::uniform(1e-13)).unwrap().sensor_log(&scene).unwrap()
 }
