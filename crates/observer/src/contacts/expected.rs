@@ -66,7 +66,7 @@ fn told_by_noise(problem: &Problem, at: &Unknowns) -> Option<Vec<SVector<f64, CO
         // Held, the constants are the likeliest beforehand along the step, whatever the others are.
         let combination = problem.body.1 * body;
         let known = body.dot(&combination);
-        if known < KEPT && known > claimed.left.max(0.0).powi(2) {
+        if known < KEPT && known > claimed.left.powi(2) {
             all.push(combination / known.sqrt());
         }
     }

@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
 /// those that the equations make of them.
 const SOUGHT: usize = 6;
 const ROUNDS: usize = 3;
-/// Standard deviations of what noise adds that count as if it did.
+/// Standard deviations of what noise adds by which the rest must exceed nothing, so that it is there at all.
 const CHANCE: f64 = 2.0;
 /// What is left of the information at least, as a share of it: a deviation is then twenty times what the equations claim.
 const LEAST: f64 = 0.05;
@@ -96,7 +96,7 @@ impl Levers {
         }
         let one = |(step, turned): (_, &Vec<Spin>)| {
             let (added, chance) = self.added(turned);
-            Claimed { step, left: 1.0 - added - CHANCE * chance }
+            Claimed { step, left: left(added, chance) }
         };
         steps.into_iter().zip(&turned).map(one).collect()
     }
@@ -111,6 +111,9 @@ impl Levers {
         let lengths: Vec<f64> = (0..count).map(|i| shared(i, i).max(f64::MIN_POSITIVE).sqrt()).collect();
         let cosines =
             nalgebra::DMatrix::from_fn(count, count, |i, k| shared(i, k) / (lengths[i] * lengths[k]));
+        if cosines.iter().any(|of| !of.is_finite()) {
+            return Vec::new();
+        }
         let eigen = SymmetricEigen::new(cosines);
         let own = (0..count).filter(|&m| eigen.eigenvalues[m] > OWN);
         let basis: Vec<_> = own
@@ -142,8 +145,14 @@ impl Levers {
 /// A direction of unit information of which noise of levers may make much.
 pub(super) struct Claimed {
     pub(super) step: Step<CONSTANTS>,
-    /// Share of the information that is there without it, at the least that chance leaves likely: it may be negative.
+    /// Share of the information that is there without it; zero where that may be chance.
     pub(super) left: f64,
+}
+
+/// Of which noise adds `added` with a deviation of `chance`: by the mean of the inverse of its square, to second order.
+fn left(added: f64, chance: f64) -> f64 {
+    let rest = 1.0 - added;
+    if rest > CHANCE * chance { rest / (1.0 + 3.0 * (chance / rest).powi(2)).sqrt() } else { 0.0 }
 }
 
 /// Angular velocities at the nodes.

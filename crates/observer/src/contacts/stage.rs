@@ -321,7 +321,11 @@ impl<'a> Stage<'a> {
         if refused {
             return linear;
         }
-        let errors = errors_of_levers(&self.problem, &self.solved);
-        linear.redrawn(&self.problem, &self.solved, DRAWS).with_errors(errors)
+        let widened = linear.redrawn(&self.problem, &self.solved, DRAWS);
+        // In the plane a lever is adjusted along the one direction that it has.
+        if self.problem.planar {
+            return widened;
+        }
+        widened.with_errors(errors_of_levers(&self.problem, &self.solved))
     }
 }
