@@ -37,7 +37,7 @@ pub(super) fn misread_forces(
 ) -> Vec<MisreadForce> {
     let whole: DVec3 = contacts.iter().flatten().map(|contact| contact.f).sum();
     let mass = whole.length() / times.len() as f64 / gravity;
-    if !(mass > 0.0) {
+    if mass.is_nan() || mass <= 0.0 {
         return Vec::new();
     }
     let still = vec![0.0; times.len()];

@@ -185,6 +185,7 @@ fn estimate() -> EstimateData {
         pose_errors: None,
         pose_covariances: Vec::new(),
         misread: Vec::new(),
+        misread_forces: Vec::new(),
         suspects: Vec::new(),
         explanations: Vec::new(),
         inertia_covariance: Default::default(),
