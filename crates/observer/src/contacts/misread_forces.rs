@@ -40,44 +40,28 @@ pub(super) fn misread_forces(
     if mass.is_nan() || mass <= 0.0 {
         return Vec::new();
     }
-    let still = vec![0.0; times.len()];
-    let bends: Vec<f64> = {
-        let ways: Vec<Way> = (0..sampled.len()).map(|palm| way(contacts, times, palm, &still)).collect();
-        bends(&ways, times.len())
-    };
-    let mut all = Vec::new();
-    for palm in (0..sampled.len()).filter(|&palm| sampled[palm]) {
+    let palms = (0..sampled.len()).filter(|&palm| sampled[palm]);
+    let off = |palm: usize| {
         let (way, noise) = forces(contacts, times, palm);
-        all.extend(way.off(noise).into_iter().filter_map(
-            |Off { sample: k, told: Told { value, .. }, around }| {
-                let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
-                let h = 0.5 * (times[after] - times[before]);
-                let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
-                let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
-                let shown = DEVIATIONS * deviation + bends[k];
-                (read.repeated || shown < SHOWN * thrown).then_some(MisreadForce {
-                    sample: k,
-                    palm,
-                    f: value,
-                    around,
-                })
-            },
-        ));
+        way.off(noise).into_iter().map(move |off| (palm, off))
+    };
+    let off: Vec<(usize, Off)> = palms.flat_map(off).collect();
+    if off.is_empty() {
+        return Vec::new();
     }
+    let still = vec![0.0; times.len()];
+    let ways: Vec<Way> = (0..sampled.len()).map(|palm| way(contacts, times, palm, &still)).collect();
+    let one = |(palm, Off { sample: k, told: Told { value, .. }, around }): (usize, Off)| {
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
+        let h = 0.5 * (times[after] - times[before]);
+        let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
+        let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
+        let bent = ways.iter().map(|way| way.left_at(k)).fold(0.0, f64::max);
+        let shows = DEVIATIONS * deviation + bent >= SHOWN * thrown;
+        (read.repeated || !shows).then_some(MisreadForce { sample: k, palm, f: value, around })
+    };
+    let mut all: Vec<MisreadForce> = off.into_iter().filter_map(one).collect();
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
-    all
-}
-
-/// How far the contacts of a sample are from where those around them say, m: the farthest.
-fn bends(ways: &[Way], count: usize) -> Vec<f64> {
-    let mut all = vec![0.0f64; count];
-    for way in ways {
-        let out = vec![false; way.samples.len()];
-        for (j, &k) in way.samples.iter().enumerate() {
-            let left = way.told(j, &out).map_or(f64::INFINITY, |told| way.left(j, &told));
-            all[k] = all[k].max(left);
-        }
-    }
     all
 }
 

@@ -132,6 +132,13 @@ impl Way {
         near.filter(|&i| !suspected[i]).filter_map(one).fold(0.0, f64::max)
     }
 
+    /// How far the value of a sample is from what those around it say, all of them; infinite where they are too few, nothing where there is none.
+    pub(super) fn left_at(&self, sample: usize) -> f64 {
+        let Ok(j) = self.samples.binary_search(&sample) else { return 0.0 };
+        let told = self.told(j, &vec![false; self.points.len()]);
+        told.map_or(f64::INFINITY, |told| self.left(j, &told))
+    }
+
     /// The median of the values around one, at an end carried on to it by the slope of medians.
     fn usual(&self, j: usize) -> DVec3 {
         let inner = |j: usize| j.clamp(STEADY, self.points.len() - 1 - STEADY);
@@ -187,12 +194,12 @@ impl Way {
     }
 
     /// By how many metres of unit noise a contact is elsewhere than it is told.
-    pub(super) fn left(&self, j: usize, told: &Told) -> f64 {
+    fn left(&self, j: usize, told: &Told) -> f64 {
         told.value.distance(self.points[j]) / (1.0 + told.squares).sqrt()
     }
 
     /// What the cubic through the values beside one leads to, at an end the parabola; those that are `out` say nothing. None with too few of them.
-    pub(super) fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
+    fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
         let beside = self.beside(j, out);
         if beside.is_empty() {
             return None;
