@@ -8,6 +8,7 @@
 use super::body::{CONSTANTS, INERTIA};
 use super::equations::Gradient;
 use super::problem::{Problem, Unknowns};
+use super::record::Contact;
 use super::rows::Rows;
 use super::solve::{Reduced, Solved, Step};
 use super::state::{MOTION, Tangent};
@@ -43,12 +44,9 @@ impl Levers {
             let turn = at.body.turn(motion.q, motion.L);
             let end = problem.nodes.get(j + 1).copied().unwrap_or(problem.nodes[j] + 1);
             for k in problem.nodes[j]..end {
-                let noise = problem.noise_at(k);
-                let of = |contact| {
-                    let rows = Rows::new(contact, motion, &turn, &noise, problem.friction)?;
-                    Some((j, rows.of_levers(contact, &noise)))
-                };
-                all.extend(problem.record.contacts[k].iter().filter_map(of));
+                let of =
+                    |(contact, rows): (&Contact, Rows)| (j, rows.of_levers(contact, problem.noise.contact));
+                all.extend(problem.conditions(k, motion, &turn).map(of));
             }
         }
         let spins = at.motions.iter().map(|motion| motion.spin_derivatives(&at.body)).collect();
@@ -186,4 +184,17 @@ fn sum(steps: &[Step<CONSTANTS>], weight: impl Fn(usize) -> f64) -> Step<CONSTAN
         all.body += step.body * by;
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::left;
+
+    /// Nothing is taken off where noise adds nothing, all where the rest may be chance, and more the larger that is.
+    #[test]
+    fn what_may_be_chance_is_not_left() {
+        assert_eq!([left(0.0, 0.0), left(0.25, 0.0)], [1.0, 0.75]);
+        assert!(left(0.5, 0.1) < 0.5 && left(0.5, 0.2) < left(0.5, 0.1) && left(0.5, 0.2) > 0.0);
+        assert_eq!([left(0.5, 0.26), left(1.0, 0.1), left(1.5, 0.0)], [0.0; 3]);
+    }
 }

@@ -156,8 +156,8 @@ impl Problem<'_> {
     pub(super) fn visit_conditions(&self, at: &Unknowns, mut visit: impl FnMut(usize, usize, Vector3<f64>)) {
         self.gone_through(at, Problem::step, |_, k, motion, _: &AtNodes<0>| {
             let turn = at.body.turn(motion.q, motion.L);
-            for (palm, rows) in self.conditions(k, motion, &turn) {
-                visit(k, palm, rows.values());
+            for (contact, rows) in self.conditions(k, motion, &turn) {
+                visit(k, contact.palm, rows.values());
             }
         });
     }
@@ -168,10 +168,10 @@ impl Problem<'_> {
         k: usize,
         motion: &'a Motion,
         turn: &'a Turn,
-    ) -> impl Iterator<Item = (usize, Rows)> + 'a {
+    ) -> impl Iterator<Item = (&'a Contact, Rows)> + 'a {
         let noise = self.noise_at(k);
         let rows = move |contact: &'a Contact| {
-            Some((contact.palm, Rows::new(contact, motion, turn, &noise, self.friction)?))
+            Some((contact, Rows::new(contact, motion, turn, &noise, self.friction)?))
         };
         self.record.contacts[k].iter().filter_map(rows)
     }

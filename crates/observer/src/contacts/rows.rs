@@ -145,10 +145,11 @@ impl Rows {
         (0..self.count).map(move |i| (self.feet[i], values[i]))
     }
 
-    /// What noise of the lever that is left once the contact is adjusted adds to the information on the angular velocity.
-    pub(super) fn of_levers(&self, contact: &Contact, noise: &ContactNoiseLevel) -> Matrix3<f64> {
+    /// What noise of the lever that is left once the contact is adjusted adds to the information on the angular velocity;
+    /// `deviation` is that of a contact at a sample, m.
+    pub(super) fn of_levers(&self, contact: &Contact, deviation: f64) -> Matrix3<f64> {
         let square = |of: DVec3| Matrix3::from(DMat3::from_cols(of * of.x, of * of.y, of * of.z));
-        let read = noise.contact * noise.contact / contact.samples;
+        let read = deviation * deviation / contact.samples;
         let along = self.axes[1..].iter().take(contact.freedoms()).map(|axis| square(*axis) * read);
         let told = self.feet.iter().take(self.count).map(|foot| square(*foot));
         let left = along.sum::<Matrix3<f64>>() - told.sum::<Matrix3<f64>>();

@@ -126,8 +126,7 @@ impl Way {
         let one = |i: usize| {
             let moved: Option<Vec<usize>> = by.iter().map(|&other| (other + i).checked_sub(j)).collect();
             let moved = moved.filter(|moved| moved.iter().all(|&m| m < suspected.len() && !suspected[m]))?;
-            let (value, weights) = self.through(&moved, i);
-            Some(self.left(i, &Told { value, squares: weights.iter().map(|of| of * of).sum() }))
+            Some(self.left(i, &self.told_by(&moved, i)))
         };
         near.filter(|&i| !suspected[i]).filter_map(one).fold(0.0, f64::max)
     }
@@ -201,11 +200,13 @@ impl Way {
     /// What the cubic through the values beside one leads to, at an end the parabola; those that are `out` say nothing. None with too few of them.
     fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
         let beside = self.beside(j, out);
-        if beside.is_empty() {
-            return None;
-        }
-        let (value, weights) = self.through(&beside, j);
-        Some(Told { value, squares: weights.iter().map(|weight| weight * weight).sum() })
+        (!beside.is_empty()).then(|| self.told_by(&beside, j))
+    }
+
+    /// What the polynomial through some values leads to.
+    fn told_by(&self, beside: &[usize], j: usize) -> Told {
+        let (value, weights) = self.through(beside, j);
+        Told { value, squares: weights.iter().map(|weight| weight * weight).sum() }
     }
 
     /// The values beside one that tell what it is, less than all that are needed none.

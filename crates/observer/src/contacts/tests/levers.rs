@@ -28,14 +28,14 @@ fn spin_errors(found: &ContactEstimate, log: &ContactLog) -> (f64, f64) {
     (largest, all.iter().map(|of| of.length_squared()).sum::<f64>() / (3 * all.len()) as f64)
 }
 
-/// Of a body that is nearly a ball levers are little more than noise, and squared errors of the spin are 3 times what the equations claim.
+/// Of a body that is nearly a ball levers are little more than noise: with that counted squared errors of the spin are 0.41 of what is said, without 0.69.
 #[test]
 fn the_spin_of_a_known_body_that_is_nearly_round_is_as_good_as_it_is_said() {
     let axes = DVec3::new(0.36, 0.34, 0.32);
     let mass = MassProperties::from_principal(1.0, DVec3::new(0.039, 0.046, 0.051)).unwrap();
     let start = InitialMotion { R_WO: DQuat::from_rotation_x(0.4), w_WO: DVec3::new(0.6, -0.5, 0.4) };
-    let exact = tumbled_of(axes, mass, start, SampleTimes { duration: 1.0, rate: 500.0 });
-    let (level, noise) = level(0.34, 1.0, 2e-3);
+    let exact = tumbled_of(axes, mass, start, SampleTimes { duration: 1.0, rate: 1000.0 });
+    let (level, noise) = level(0.34, 1.0, 1e-3);
     let options = ContactOptions { friction: Some(0.0), body: Some(mass), suspects: false, ..options(noise) };
     let (mut mean, runs) = (0.0, 8);
     for seed in 0..runs {
