@@ -81,8 +81,8 @@ fn in_viewers(path: &Path, samples: usize) -> Result<(), Failure> {
          those that ROS 2 publishes (Jazzy, as `rosbags` has them), field by field (`tests/ros2/in_viewers.py`); and whether what is in the messages can be drawn: \
          unit quaternions, arrows of two points, triangles of three corners to scale, colours that are seen, clouds whose fields and sizes fit, and of every frame a \
          transform at or before the stamp, as Foxglove's 3D panel asks for. Rerun makes nothing of poses with \
-         covariance and of markers but messages to be read: it shows the moving frame, contacts, forces (as points along their arrows), curves and the corners of \
-         the bounds; the meshes it shows from `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here. No message has a schema of Foxglove's own (`foxglove.SceneUpdate` and the like).\n"
+         covariance and of markers but messages to be read: it shows the moving frame, contacts, forces (as points along their arrows), curves and the \
+         bounds (as points all over them); the meshes it shows from `--mesh glb`. Foxglove's 3D panel lists all of these types; that it draws them was not looked at, for it does not run here. No message has a schema of Foxglove's own (`foxglove.SceneUpdate` and the like).\n"
     );
     println!(
         "| topic | type | as published | can be drawn | in Rerun (rows) |\n|---|---|---|---|---|\n{}",
@@ -173,8 +173,8 @@ fn expected(bag: &ResultBag<'_>, mesh: &TriangleMesh) -> Vec<(String, Vec<Vec<Va
         ("/tf".to_owned(), moving(&place, &["world", "object"])),
         ("/recon/pose".to_owned(), moving(&|k| [place(k), covariance(k)].concat(), &["world"])),
         ("/recon/contact_curves".to_owned(), still(points(bag.curves.iter().copied()))),
-        ("/recon/lower_bound".to_owned(), still(points(mesh.vertices.iter().copied()))),
-        ("/recon/upper_bound".to_owned(), still(points(mesh.vertices.iter().copied()))),
+        ("/recon/lower_bound".to_owned(), still(points(mesh.spread(ResultBag::OVER_BOUND)))),
+        ("/recon/upper_bound".to_owned(), still(points(mesh.spread(ResultBag::OVER_BOUND)))),
         ("/recon/bounds".to_owned(), vec![[triangles("lower", 0), triangles("upper", 1)].concat()]),
     ];
     // As often as markers.

@@ -22,6 +22,22 @@ const ALIKE: f64 = 1e-12;
 /// Steps of readings that are rounding, as a share of the largest.
 const ROUNDING: f64 = 1e-9;
 
+/// Axes along which a sensor reads a vector.
+#[derive(Clone, Copy)]
+pub(crate) struct SensedAlong([DVec3; 3], usize);
+
+impl<const N: usize> From<[DVec3; N]> for SensedAlong {
+    fn from(axes: [DVec3; N]) -> Self {
+        Self(std::array::from_fn(|i| axes.get(i).copied().unwrap_or_default()), N.min(3))
+    }
+}
+
+impl SensedAlong {
+    fn of(&self, vector: DVec3) -> impl Iterator<Item = f64> {
+        self.0.iter().take(self.1).map(move |axis| vector.dot(*axis).abs())
+    }
+}
+
 /// What is rough about the readings of sensors of one kind.
 #[derive(Default)]
 pub(crate) struct Rough {
@@ -37,13 +53,13 @@ impl Rough {
         &mut self,
         times: &[f64],
         reading: impl Fn(usize) -> Option<DVec3>,
-        axes: impl Fn(usize) -> Vec<DVec3>,
+        axes: impl Fn(usize) -> SensedAlong,
     ) {
         let readings: Vec<Option<DVec3>> = (0..times.len()).map(reading).collect();
-        let axes: Vec<Vec<DVec3>> = (0..times.len()).map(axes).collect();
+        let axes: Vec<SensedAlong> = (0..times.len()).map(axes).collect();
         for (k, pair) in readings.windows(2).enumerate() {
             if let [Some(a), Some(b)] = pair {
-                self.steps.extend(axes[k].iter().map(|axis| (*b - *a).dot(*axis).abs()));
+                self.steps.extend(axes[k].of(*b - *a));
             }
         }
         for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
@@ -54,7 +70,7 @@ impl Rough {
                 let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * *weight));
                 let Some(rough) = weighed.sum::<Option<DVec3>>() else { continue };
                 let size = readings[middle].map_or(0.0, DVec3::length);
-                all.extend(axes[middle].iter().map(|axis| (size, rough.dot(*axis).abs())));
+                all.extend(axes[middle].of(rough).map(|rough| (size, rough)));
             }
         }
     }
@@ -219,7 +235,7 @@ mod tests {
             .map(|smooth| smooth + noise(&mut random, smooth))
             .collect();
         let mut rough = Rough::default();
-        rough.add(&times, |k| Some(readings[k]), |_| DVec3::AXES.to_vec());
+        rough.add(&times, |k| Some(readings[k]), |_| DVec3::AXES.into());
         rough
     }
 
@@ -234,7 +250,7 @@ mod tests {
         let rare = |k: u32| DVec3::splat((0.05 * f64::from(k)).sin());
         let mut all = Rough::default();
         let times: Vec<f64> = (0..400).map(f64::from).collect();
-        all.add(&times, |k| Some(rare(k as u32)), |_| vec![DVec3::X]);
+        all.add(&times, |k| Some(rare(k as u32)), |_| [DVec3::X].into());
         assert!(of(&all.all[0]) > 3e-7 && all.deviation() < 1e-11, "{}", all.deviation());
         let found = rough(|random, _| 1e-3 * vector(random)).deviation();
         // The median of 24000 correlated numbers is known to about a hundredth.
@@ -257,7 +273,7 @@ mod tests {
             let readings: Vec<DVec3> =
                 times.iter().map(|t| DVec3::splat((0.5 * t).sin() + noise * random.draw())).collect();
             let mut all = Rough::default();
-            all.add(&times, |k| Some(readings[k]), |_| vec![DVec3::X]);
+            all.add(&times, |k| Some(readings[k]), |_| [DVec3::X].into());
             all.over(|_| 5e-3).beyond_chance()
         };
         assert_eq!(rare(0.0), None);

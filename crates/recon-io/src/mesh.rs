@@ -39,6 +39,21 @@ pub enum MeshError {
     },
 }
 
+/// The middles of the `cuts` by `cuts` equal triangles of one.
+fn in_the_middle([a, b, c]: &[DVec3; 3], cuts: usize, points: &mut Vec<DVec3>) {
+    let step = 1.0 / cuts as f64;
+    let at = |i: f64, k: f64| *a + step * (i * (*b - *a) + k * (*c - *a));
+    for i in 0..cuts {
+        for k in 0..cuts - i {
+            let (along, across) = (i as f64, k as f64);
+            points.push(at(along + 1.0 / 3.0, across + 1.0 / 3.0));
+            if i + k + 1 < cuts {
+                points.push(at(along + 2.0 / 3.0, across + 2.0 / 3.0));
+            }
+        }
+    }
+}
+
 impl TriangleMesh {
     /// Checks and takes a mesh.
     ///
@@ -55,6 +70,27 @@ impl TriangleMesh {
             }
         }
         Ok(Self { vertices, triangles })
+    }
+
+    /// Its vertices, and points all over its triangles, for viewers that draw points alone: each triangle is cut into equal ones, as many along an edge as
+    /// make about `most` in all, with a point in the middle of each; no triangle has fewer than one.
+    #[must_use]
+    pub fn spread(&self, most: usize) -> Vec<DVec3> {
+        let corners = |triangle: &[u32; 3]| triangle.map(|index| self.vertices.get(index as usize).copied());
+        let triangles = self.triangles.iter().filter_map(|triangle| match corners(triangle) {
+            [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+            _ => None,
+        });
+        let triangles: Vec<[DVec3; 3]> = triangles.collect();
+        let area = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).length();
+        let whole: f64 = triangles.iter().map(area).sum();
+        let mut points = self.vertices.clone();
+        for triangle in &triangles {
+            // A cast from f64 saturates, and of nothing by nothing it is 0.
+            let cuts = ((most as f64 * area(triangle) / whole).sqrt() as usize).clamp(1, most.max(1));
+            in_the_middle(triangle, cuts, &mut points);
+        }
+        points
     }
 
     /// Whether every edge is passed as often forwards as backwards, so that the triangles leave no hole and are turned one
@@ -160,6 +196,24 @@ mod tests {
         };
         let missing = 4.0 / 3.0 * PI - solid.moments().volume;
         assert!(missing > 0.0 && missing < 0.03, "{missing}");
+    }
+
+    /// Points lie over a triangle as its area does: their mean and their second moments are those of the triangle, the latter up to a part in the number of
+    /// points (the triangles that they stand for have moments of their own).
+    #[test]
+    fn points_are_spread_by_area() {
+        let vertices = vec![DVec3::ZERO, DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 1.0, 2.0), DVec3::Z];
+        // The second triangle has no area, and the third a corner that is not there.
+        let mesh = TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 0, 1], [0, 1, 9]] };
+        let points = mesh.spread(400);
+        assert_eq!((points.len(), &points[..4]), (4 + 400 + 1, &mesh.vertices[..]));
+        let over = &points[4..404];
+        let mean = over.iter().sum::<DVec3>() / 400.0;
+        assert!(mean.distance(DVec3::new(1.0, 1.0 / 3.0, 2.0 / 3.0)) < 1e-14, "{mean}");
+        // That of a triangle along an edge: a sixth of the square of its length.
+        let second = over.iter().map(|point| point.x * point.x).sum::<f64>() / 400.0;
+        assert!((second / (9.0 / 6.0) - 1.0).abs() < 1.0 / 400.0, "{second}");
+        assert!(mesh.spread(0).len() == 6 && TriangleMesh::default().spread(9).is_empty());
     }
 
     #[test]

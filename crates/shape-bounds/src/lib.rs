@@ -55,7 +55,6 @@ pub mod features;
 pub mod fit;
 #[cfg(any(test, feature = "generators"))]
 pub mod generators;
-mod halves;
 #[cfg(test)]
 mod laws;
 mod matrix;

@@ -27,6 +27,16 @@ pub enum IntersectionError {
         /// Its margin as given.
         margin: f64,
     },
+    /// Points so far apart that their distances leave the range of `f64`.
+    #[error("half-space {index}: point ({:e}, {:e}, {:e}), margin {margin:e}: its square leaves the range of f64; check its unit", point.x, point.y, point.z)]
+    TooFar {
+        /// Which half-space.
+        index: usize,
+        /// Its point as given.
+        point: DVec3,
+        /// Its margin as given.
+        margin: f64,
+    },
     /// No point is in all half-spaces.
     #[error(
         "half-spaces {conflict:?} have no point in common: every point is at least {deficit} m outside of one of \

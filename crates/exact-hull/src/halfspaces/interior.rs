@@ -19,6 +19,13 @@ const PIVOT: f64 = 1e-11;
 pub(super) fn interior_point(half_spaces: &[HalfSpace]) -> Result<DVec3, IntersectionError> {
     let mean = half_spaces.iter().map(|h| h.point).sum::<DVec3>() / half_spaces.len() as f64;
     let size = half_spaces.iter().map(|h| h.point.distance(mean) + h.margin.abs()).fold(0.0, f64::max);
+    if size.is_infinite() {
+        let farthest = |h: &HalfSpace| h.point.abs().max_element().max(h.margin.abs());
+        let far = half_spaces.iter().enumerate().max_by(|(_, a), (_, b)| farthest(a).total_cmp(&farthest(b)));
+        if let Some((index, &HalfSpace { point, margin, .. })) = far {
+            return Err(IntersectionError::TooFar { index, point, margin });
+        }
+    }
     let size = if size > 0.0 { size } else { 1.0 };
     let slack = |y: DVec3| half_spaces.iter().map(|h| -h.excess(y)).fold(f64::INFINITY, f64::min);
     if slack(mean) > DEEP * size {

@@ -247,6 +247,10 @@ fn bad_half_spaces_are_named() {
     let mut spaces = cube(1.0);
     spaces[3].margin = f64::NAN;
     assert!(matches!(Intersection::of(&spaces), Err(IntersectionError::NotFinite { index: 3, .. })));
+    // Planes that all pass the mean of their points leave the search for one inside, which squares distances.
+    spaces = cube(1e160);
+    spaces[3].point *= 2.0;
+    assert!(matches!(Intersection::of(&spaces), Err(IntersectionError::TooFar { index: 3, .. })));
 }
 
 /// Whether some direction is open to rounding, by trying the directions across every two normals, and against every one.

@@ -1,6 +1,7 @@
 use super::axes::ANY_TURN;
 use super::beginning::Beginning;
 use super::body::{Body, CONSTANTS};
+use super::both::both;
 use super::cold;
 use super::explanations::explanations;
 use super::joint::pose_errors;
@@ -147,11 +148,11 @@ fn estimate(
     if beginning.is_some_and(|of| of.samples() > log.times().len()) {
         return Err(ContactEstimateError::Lost);
     }
-    let record = Record::new(log, options).ok_or(ContactEstimateError::NoContact)?;
+    let (rougher, record) = both(log.times().len(), || options.rougher(log), || Record::new(log, options));
+    let record = record.ok_or(ContactEstimateError::NoContact)?;
     let length = options.size.or_else(|| cold::size(&record)).ok_or(ContactEstimateError::NoSize)?;
     let units = cold::units(&record, options.gravity, length);
-    let rougher = options.rougher(log, &units);
-    let rough = options.with_noise(rougher);
+    let (rough, rougher) = options.roughened(rougher, &units);
     let again = if rough == *options { None } else { Record::new(log, &rough) };
     let record = again.unwrap_or(record);
     let source = Source { log, options: &rough, units, beginning };

@@ -3,6 +3,7 @@
 //! A force that is as large throws the centre of mass, and bends the way of the contacts. Where noise hides how far, it is left as it is: a motion hardly depends on
 //! it then, or contradicts it.
 
+use super::both::of_each;
 use super::outliers::{is_steady, way};
 use super::record::Contact;
 use super::way::{Off, Told, Way};
@@ -40,12 +41,12 @@ pub(super) fn misread_forces(
     if mass.is_nan() || mass <= 0.0 {
         return Vec::new();
     }
-    let palms = (0..sampled.len()).filter(|&palm| sampled[palm]);
-    let off = |palm: usize| {
+    let palms: Vec<usize> = (0..sampled.len()).filter(|&palm| sampled[palm]).collect();
+    let off = |palm: usize| -> Vec<(usize, Off)> {
         let (way, noise) = forces(contacts, times, palm);
-        way.off(noise).into_iter().map(move |off| (palm, off))
+        way.off(noise).into_iter().map(|off| (palm, off)).collect()
     };
-    let off: Vec<(usize, Off)> = palms.flat_map(off).collect();
+    let off: Vec<_> = of_each(times.len(), &palms, off).into_iter().flatten().collect();
     if off.is_empty() {
         return Vec::new();
     }

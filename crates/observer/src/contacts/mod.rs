@@ -32,6 +32,7 @@ mod backwards;
 mod beginning;
 mod between;
 mod body;
+mod both;
 mod changed;
 mod cold;
 mod directly;

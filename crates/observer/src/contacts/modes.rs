@@ -50,6 +50,14 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
     let times = &record.times;
     let mut modes = vec![[ContactMode::Off; MOST_PALMS]; times.len()];
     for i in 0..MOST_PALMS {
+        let mut own = record.contacts.iter().flatten().filter(|contact| contact.palm == i);
+        if own.all(|contact| contact.frictionless) {
+            // Whatever friction is read there is none.
+            let touched = |contacts: &Vec<Contact>| contacts.iter().any(|contact| contact.palm == i);
+            let slides = modes.iter_mut().zip(&record.contacts).filter(|(_, contacts)| touched(contacts));
+            slides.for_each(|(modes, _)| modes[i] = ContactMode::Slide);
+            continue;
+        }
         let ratios = averaged(&ratios(record, i), times, time);
         let slides = sliding(&ratios);
         // A mean may be below that of sliding by the samples beside it: nearer than `time` to one that is not it tells nothing.
@@ -60,8 +68,7 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
             let beside = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
             let alone = beside.filter_map(|j| slides.get(j)).any(|slides| *slides);
             let doubtful = alone || before[k].min(after[k]) <= time;
-            let frictionless = record.contacts[k].iter().any(|c| c.palm == i && c.frictionless);
-            modes[k][i] = if doubtful || frictionless { ContactMode::Slide } else { ContactMode::Stick };
+            modes[k][i] = if doubtful { ContactMode::Slide } else { ContactMode::Stick };
         }
     }
     modes

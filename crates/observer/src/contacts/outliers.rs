@@ -1,5 +1,6 @@
 //! Contacts that are off by far more than noise at one sample, or a few: a sensor's misreadings, put where the contacts around say.
 
+use super::both::of_each;
 use super::record::Contact;
 use super::way::{Off, STEADY, Told, Way};
 use glam::DVec3;
@@ -29,8 +30,7 @@ pub(super) fn misread(
 ) -> Vec<Misread> {
     let palms = contacts.iter().flatten().map(|contact| contact.palm + 1).max().unwrap_or(0);
     let bends = bends(contacts, times, gravity);
-    let mut all = Vec::new();
-    for palm in 0..palms {
+    let of_palm = |palm: usize| {
         let way = way(contacts, times, palm, &bends);
         let one = |Off { sample, told: Told { value, squares }, around }: Off| {
             // As good as what it is told by, and no better than what that leaves of those around it.
@@ -38,8 +38,11 @@ pub(super) fn misread(
                 if around > 0.0 && deviation > 0.0 { (deviation / around).powi(2) } else { f64::INFINITY };
             Misread { sample, palm, c: value, samples: squares.recip().min(as_around) }
         };
-        all.extend(way.off(deviation).into_iter().map(one));
-    }
+        way.off(deviation).into_iter().map(one).collect()
+    };
+    let palms: Vec<usize> = (0..palms).collect();
+    let of_palms: Vec<Vec<Misread>> = of_each(times.len(), &palms, of_palm);
+    let mut all = of_palms.concat();
     all.sort_unstable_by_key(|of| (of.sample, of.palm));
     all
 }

@@ -1,6 +1,7 @@
 //! What the estimator reads of a log: contacts at samples, and what the forces do between them.
 
 use super::between::intervals;
+use super::both::of_each;
 use super::feet;
 use super::impulses;
 use super::misread_forces::{MisreadForce, mend_forces, misread_forces};
@@ -221,8 +222,9 @@ impl Record {
         let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
         let across = points().map(|touch| (touch.p_WC.y - origin.y).powi(2)).sum::<f64>();
         let missed = MissedTwist::of(log);
-        let mut contacts: Vec<Vec<Contact>> =
-            (0..times.len()).map(|k| contacts_at(log, k, (origin, &missed), options)).collect();
+        let samples: Vec<usize> = (0..times.len()).collect();
+        let mut contacts =
+            of_each(times.len(), &samples, |k| contacts_at(log, k, (origin, &missed), options));
         let misread = misread(&contacts, &times, noise.contact, options.gravity);
         mend(&mut contacts, &misread);
         let sampled: Vec<bool> =
@@ -238,7 +240,6 @@ impl Record {
         }
         let all_impulses = sampled.iter().all(|sampled| !sampled);
         let by_samples = sampled.iter().all(|sampled| *sampled);
-        let samples = (0..times.len()).collect();
         Some(Self {
             times,
             samples,

@@ -1,9 +1,10 @@
 //! Noise of the sensors from the roughness of their own readings.
 
+use super::both::both;
 use super::noise::{ContactNoiseLevel, ImpulseNoise};
 use super::options::ContactOptions;
 use super::problem::Units;
-use crate::roughness::Rough;
+use crate::roughness::{Rough, SensedAlong};
 use glam::{DQuat, DVec3};
 use object_dynamics::{ContactLog, LoggedPalm, SensedAxes, SensedForce};
 
@@ -12,18 +13,22 @@ const CREEP: f64 = 3e-5;
 
 impl ContactOptions {
     /// How many times as noisy as stated contacts and forces of a log are, where they are by more than chance makes: those of taxels, of a sensor that is
-    /// worse than its sheet. Else 1, and where noise is not what conditions are off by.
-    pub(super) fn rougher(&self, log: &ContactLog, units: &Units) -> [f64; 2] {
+    /// worse than its sheet. Else 1.
+    pub(super) fn rougher(&self, log: &ContactLog) -> [f64; 2] {
         let stated = self.noise;
-        let contacts = contacts(log, self.planar).over(|_| stated.contact);
-        let forces = forces(log, self.planar, LoggedPalm::force).over(|f| stated.force(DVec3::X * f));
-        let rougher = [contacts, forces].map(|rough| rough.beyond_chance().unwrap_or(1.0));
-        if stated.times(rougher).limits(units) { rougher } else { [1.0; 2] }
+        let contacts = || contacts(log, self.planar).over(|_| stated.contact).beyond_chance();
+        let forces = || {
+            let forces = forces(log, self.planar, LoggedPalm::force);
+            forces.over(|f| stated.force(DVec3::X * f)).beyond_chance()
+        };
+        let (contacts, forces) = both(log.times().len(), contacts, forces);
+        [contacts, forces].map(|rough| rough.unwrap_or(1.0))
     }
 
-    /// With contacts and forces so many times as noisy.
-    pub(super) fn with_noise(&self, times: [f64; 2]) -> Self {
-        Self { noise: self.noise.times(times), ..*self }
+    /// With contacts and forces so many times as noisy, and how many: where noise is not what conditions are off by it counts as stated.
+    pub(super) fn roughened(&self, times: [f64; 2], units: &Units) -> (Self, [f64; 2]) {
+        let times = if self.noise.times(times).limits(units) { times } else { [1.0; 2] };
+        (Self { noise: self.noise.times(times), ..*self }, times)
     }
 }
 
@@ -50,12 +55,13 @@ impl ContactNoiseLevel {
     /// `floor` (m/s) is taken as it is. In a log of the plane of x and z nothing is felt along y.
     #[must_use]
     pub fn by_roughness(log: &ContactLog, floor: f64, planar: bool) -> Self {
-        let [forces, impulses] =
-            [LoggedPalm::force, LoggedPalm::impulse].map(|read| forces(log, planar, read));
+        let pressed = || [LoggedPalm::force, LoggedPalm::impulse].map(|read| forces(log, planar, read));
+        let ([forces, impulses], contact) =
+            both(log.times().len(), pressed, || contacts(log, planar).deviation());
         let [force_fixed, force_share] = forces.growing();
         let [fixed, share] = impulses.growing();
         let impulse = (!impulses.least().is_empty()).then_some(ImpulseNoise { fixed, share });
-        Self { contact: contacts(log, planar).deviation(), force_fixed, force_share, impulse, floor }
+        Self { contact, force_fixed, force_share, impulse, floor }
     }
 }
 
@@ -65,8 +71,8 @@ fn contacts(log: &ContactLog, planar: bool) -> Rough {
     for palm in log.palms() {
         let point = |k| Some(own(palm, k) * (palm.touch(k)?.p_WC - palm.motion(k).pose.p_WP));
         let tangents = |k| match planar {
-            true => vec![own(palm, k) * normal(palm, k).cross(DVec3::Y)],
-            false => <[DVec3; 2]>::from((own(palm, k) * normal(palm, k)).any_orthonormal_pair()).to_vec(),
+            true => [own(palm, k) * normal(palm, k).cross(DVec3::Y)].into(),
+            false => <[DVec3; 2]>::from((own(palm, k) * normal(palm, k)).any_orthonormal_pair()).into(),
         };
         rough.add(log.times(), point, tangents);
     }
@@ -82,11 +88,12 @@ fn forces(log: &ContactLog, planar: bool, read: impl Fn(&LoggedPalm, usize) -> O
         let all = |k: usize| touched(k).map(|force| force.vector);
         // Without friction a force is along the normal, and across it nothing is rough.
         if axes == Some(SensedAxes::Three) && palm.friction() != Some(0.0) {
-            let everywhere = if planar { vec![DVec3::X, DVec3::Z] } else { DVec3::AXES.to_vec() };
-            rough.add(log.times(), |k| Some(own(palm, k) * all(k)?), |_| everywhere.clone());
+            let everywhere: SensedAlong =
+                if planar { [DVec3::X, DVec3::Z].into() } else { DVec3::AXES.into() };
+            rough.add(log.times(), |k| Some(own(palm, k) * all(k)?), |_| everywhere);
         } else {
             let along = |k: usize| Some(DVec3::X * all(k)?.dot(normal(palm, k)));
-            rough.add(log.times(), along, |_| vec![DVec3::X]);
+            rough.add(log.times(), along, |_| [DVec3::X].into());
         }
     }
     rough

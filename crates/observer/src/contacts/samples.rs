@@ -1,6 +1,7 @@
 //! Motion and its deviations at all samples of a log, from those at the nodes.
 
 use super::body::Body;
+use super::both::of_some;
 use super::flow::Carried;
 use super::noise::WrenchNoise;
 use super::plane;
@@ -66,23 +67,26 @@ pub(super) fn poses_at_all<const P: usize>(
 }
 
 /// Something at each sample of `log`, whose nodes have the motions `own`: at node `j`, and of the link after node `j` at the sample `k` inside.
-fn along_links<T>(
+fn along_links<T: Send>(
     log: &Record,
     problem: &Problem,
     (own, body): (&[Motion], &Body),
-    at_node: impl Fn(usize) -> T,
-    inside: impl Fn(&Link, usize, usize) -> T,
+    at_node: impl Fn(usize) -> T + Sync,
+    inside: impl Fn(&Link, usize, usize) -> T + Sync,
 ) -> Vec<T> {
     let nodes = problem.node_samples();
-    let mut all = Vec::with_capacity(log.times.len());
-    for j in 0..own.len() {
-        all.push(at_node(j));
-        if let Some(&end) = nodes.get(j + 1) {
-            let link = Link::new(log, problem, body, (j, [own[j], own[j + 1]]), nodes[j]..end);
-            all.extend((nodes[j] + 1..end).map(|k| inside(&link, j, k)));
+    let of = |some: &[usize]| {
+        let mut all = Vec::with_capacity(log.times.len());
+        for &j in some {
+            all.push(at_node(j));
+            if let Some(&end) = nodes.get(j + 1) {
+                let link = Link::new(log, problem, body, (j, [own[j], own[j + 1]]), nodes[j]..end);
+                all.extend((nodes[j] + 1..end).map(|k| inside(&link, j, k)));
+            }
         }
-    }
-    all
+        all
+    };
+    of_some(log.times.len(), &(0..own.len()).collect::<Vec<_>>(), of)
 }
 
 /// Samples from one node to the next.

@@ -5,6 +5,7 @@
 //! `1 / sqrt(I)`, and `g / sqrt(I)` is a standard normal number if nothing is wrong (Rao's score test).
 
 use super::body::{Body, CONSTANTS};
+use super::both::both;
 use super::changed::Averages;
 use super::equations::Equations;
 use super::noise::{ContactNoiseLevel, force_trace};
@@ -21,7 +22,7 @@ use super::verdict::ContactEvidence;
 use crate::doubted;
 use crate::faults::{SensorFault, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
-use contact_kinematics::{PalmSurface, at_once};
+use contact_kinematics::{PalmSurface, one_by_one};
 use glam::DVec3;
 use object_dynamics::ContactLog;
 use std::borrow::Cow;
@@ -50,7 +51,9 @@ impl<'a> Readings<'a> {
         records: [&'a Record; 2],
         longest: f64,
     ) -> Self {
-        let slopes = [slopes_of_forces(log, units), slopes_of_contacts(log, units)];
+        let slopes =
+            both(log.times().len(), || slopes_of_forces(log, units), || slopes_of_contacts(log, units))
+                .into();
         Self { log, slopes, averages: Averages::new(log, noise, records, longest) }
     }
 }
@@ -213,11 +216,7 @@ fn followed(
     };
     // Each is a pass over all samples: two at a time.
     let constants = scores.sensors.constants(problem);
-    let (here, there) = constants.split_at(constants.len() / 2);
-    let of = |faults: &[SensorFault]| faults.iter().copied().filter_map(one).collect::<Vec<_>>();
-    let (mut all, there) = at_once(|| of(here), || of(there));
-    all.extend(there);
-    all
+    one_by_one(&constants, |fault| one(*fault)).into_iter().flatten().collect()
 }
 
 /// Share of noise in the squares of the impulses.

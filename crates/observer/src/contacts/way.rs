@@ -40,6 +40,31 @@ pub(super) struct Off {
     pub(super) around: f64,
 }
 
+/// The first values of some, by number, of which a polynomial goes through four at most.
+#[derive(Default)]
+struct Few {
+    of: [usize; 2 * BESIDE],
+    count: usize,
+}
+
+impl FromIterator<usize> for Few {
+    fn from_iter<I: IntoIterator<Item = usize>>(all: I) -> Self {
+        let mut few = Self::default();
+        for (of, value) in few.of.iter_mut().zip(all) {
+            *of = value;
+            few.count += 1;
+        }
+        few
+    }
+}
+
+impl std::ops::Deref for Few {
+    type Target = [usize];
+    fn deref(&self) -> &[usize] {
+        &self.of[..self.count]
+    }
+}
+
 /// Values of a reading of a palm.
 #[derive(Default)]
 pub(super) struct Way {
@@ -93,8 +118,12 @@ impl Way {
         let spread = (square / count as f64).sqrt();
         let limit = |left: &[f64]| {
             let mut scatter: Vec<f64> = left.iter().copied().filter(|left| *left > 0.0).collect();
-            scatter.sort_by(f64::total_cmp);
-            let usual = scatter.get(scatter.len() / 2).map_or(f64::INFINITY, |median| median / MEDIAN_LENGTH);
+            let middle = scatter.len() / 2;
+            let usual = if scatter.is_empty() {
+                f64::INFINITY
+            } else {
+                *scatter.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN_LENGTH
+            };
             OFF * usual.max(deviation).max(NOTABLE / OFF * spread)
         };
         // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
@@ -126,7 +155,7 @@ impl Way {
         let one = |i: usize| {
             let moved: Option<Vec<usize>> = by.iter().map(|&other| (other + i).checked_sub(j)).collect();
             let moved = moved.filter(|moved| moved.iter().all(|&m| m < suspected.len() && !suspected[m]))?;
-            Some(self.left(i, &self.told_by(&moved, i)))
+            Some(self.left(i, &self.through(&moved, i)))
         };
         near.filter(|&i| !suspected[i]).filter_map(one).fold(0.0, f64::max)
     }
@@ -155,9 +184,9 @@ impl Way {
     fn median(&self, centre: usize) -> DVec3 {
         let around = &self.points[centre - STEADY..=centre + STEADY];
         let of = |axis: usize| {
-            let mut values: Vec<f64> = around.iter().map(|point| point[axis]).collect();
-            values.sort_by(f64::total_cmp);
-            values[values.len() / 2]
+            let mut values: [f64; 2 * STEADY + 1] = std::array::from_fn(|i| around[i][axis]);
+            values.sort_unstable_by(f64::total_cmp);
+            values[STEADY]
         };
         DVec3::new(of(0), of(1), of(2))
     }
@@ -171,7 +200,7 @@ impl Way {
         // Those that may be off themselves as well: so few in a row lead to no other one.
         let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
         let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
-        let leads = |few: &[usize]| self.through(few, j).0.distance(self.points[j]) <= within;
+        let leads = |few: &[usize]| self.through(few, j).value.distance(self.points[j]) <= within;
         [&before[..], &after].iter().any(|side| match *side {
             [a, b, c, d, ..] => leads(&[*a, *b]) || (leads(&[*a, *b, *c]) && leads(&[*a, *b, *d])),
             [a, b, c] => leads(&[*a, *b]) || leads(&[*a, *b, *c]),
@@ -180,16 +209,18 @@ impl Way {
         })
     }
 
-    /// The polynomial through some contacts at the time of another one, and its weights.
-    fn through(&self, beside: &[usize], j: usize) -> (DVec3, Vec<f64>) {
+    /// The polynomial through some contacts at the time of another one.
+    fn through(&self, beside: &[usize], j: usize) -> Told {
         let weight = |i: &usize| -> f64 {
             let others = beside.iter().filter(|other| *other != i);
             others
                 .map(|&other| (self.times[j] - self.times[other]) / (self.times[*i] - self.times[other]))
                 .product()
         };
-        let weights: Vec<f64> = beside.iter().map(weight).collect();
-        (beside.iter().zip(&weights).map(|(&i, weight)| self.points[i] * *weight).sum(), weights)
+        beside.iter().fold(Told { value: DVec3::ZERO, squares: 0.0 }, |Told { value, squares }, i| {
+            let weight = weight(i);
+            Told { value: value + self.points[*i] * weight, squares: squares + weight * weight }
+        })
     }
 
     /// By how many metres of unit noise a contact is elsewhere than it is told.
@@ -200,28 +231,21 @@ impl Way {
     /// What the cubic through the values beside one leads to, at an end the parabola; those that are `out` say nothing. None with too few of them.
     fn told(&self, j: usize, out: &[bool]) -> Option<Told> {
         let beside = self.beside(j, out);
-        (!beside.is_empty()).then(|| self.told_by(&beside, j))
-    }
-
-    /// What the polynomial through some values leads to.
-    fn told_by(&self, beside: &[usize], j: usize) -> Told {
-        let (value, weights) = self.through(beside, j);
-        Told { value, squares: weights.iter().map(|weight| weight * weight).sum() }
+        (!beside.is_empty()).then(|| self.through(&beside, j))
     }
 
     /// The values beside one that tell what it is, less than all that are needed none.
-    fn beside(&self, j: usize, out: &[bool]) -> Vec<usize> {
+    fn beside(&self, j: usize, out: &[bool]) -> Few {
         let near = |other: &usize| !out[*other] && self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
-        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).take(2 * BESIDE).collect();
-        let after: Vec<usize> =
-            (j + 1..self.points.len()).take(AMONG).filter(near).take(2 * BESIDE).collect();
+        let before: Few = (0..j).rev().take(AMONG).filter(near).collect();
+        let after: Few = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
         // At an end more of them on one side; a cubic that leads beyond all of them has eight times the noise of one.
         let most = if before.is_empty() || after.is_empty() { 2 * BESIDE - 1 } else { 2 * BESIDE };
         let from_before = before.len().min(most.saturating_sub(after.len()).max(BESIDE));
         let from_after = after.len().min(most - from_before);
         if from_before + from_after < most {
-            return Vec::new();
+            return Few::default();
         }
-        before.into_iter().take(from_before).chain(after.into_iter().take(from_after)).collect()
+        before.iter().take(from_before).chain(after.iter().take(from_after)).copied().collect()
     }
 }

@@ -5,7 +5,7 @@ use super::doubts::Doubts;
 use super::features::FoundFeatures;
 use crate::error::CliError;
 use glam::{DMat3, DVec3};
-use recon::contact_kinematics::CurvatureRadii;
+use recon::contact_kinematics::{CurvatureRadii, at_once};
 use recon::observer::rigid::{PoseCovariance, PoseErrors};
 use recon::shape_bounds::curvature::SharpBounds;
 use recon::shape_bounds::features::{FeatureOptions, Features, Pieces};
@@ -130,8 +130,11 @@ pub(super) fn bounds_of_poses(
     let noisy_curves: Vec<Vec<_>> = curves.iter().map(|curve| curve.iter().map(noisy).collect()).collect();
     let left = 1.0 - (1.0 - SHARE_OF_POSES) * alpha;
     let options = FeatureOptions::default();
-    let features = Features::find(&noisy_curves, &options)?;
-    let bounds = CertainBounds::from_features_of_poses(&noisy_curves, &options, left, deviations)?;
+    let (features, bounds) = at_once(
+        || Features::find(&noisy_curves, &options),
+        || CertainBounds::from_features_of_poses(&noisy_curves, &options, left, deviations),
+    );
+    let (features, bounds) = (features?, bounds?);
     let numbers = curves.iter().map(|curve| curve.iter().map(|of| of.sample + 1).collect()).collect();
     let features = FoundFeatures::new(features, &noisy_curves, numbers, options.odds);
     finished(&bounds, Vec::new())?.with_features(features).map(Some)

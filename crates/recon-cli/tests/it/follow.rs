@@ -94,12 +94,19 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
         assert!(told == row || (told.is_nan() && row.is_nan()), "{object}");
     }
     // The table goes to standard output line for line as it goes to a file: its first second.
-    scratch.write(
-        "begin.csv",
-        &log.text().lines().take(1 + 101).map(|line| line.to_owned() + "\n").collect::<String>(),
-    );
+    let lines = |text: &str, most: usize| {
+        text.lines().take(most).map(|line| line.to_owned() + "\n").collect::<String>()
+    };
+    scratch.write("begin.csv", &lines(&log.text(), 1 + 101));
     let (_, begin) = piped("begin.csv", &[]);
-    assert_eq!(begin, table.lines().take(1 + 11).map(|line| line.to_owned() + "\n").collect::<String>());
+    assert_eq!(begin, lines(&table, 1 + 11));
+    // What was followed before a row that is none is not lost.
+    scratch.write("torn.csv", &(lines(&log.text(), 1 + 101) + "1.01,0.5\n"));
+    let torn = scratch.run(&["follow", "torn.csv", "--scene", "scene.toml", "-o", "kept.csv"]);
+    assert_eq!(torn.code, Some(3), "{}", torn.stderr);
+    assert!(torn.stderr.contains("until then is in kept.csv"), "{}", torn.stderr);
+    // A sample is taken once it is seen that another one follows.
+    assert_eq!(scratch.read("kept.csv"), lines(&table, 1 + 10));
 }
 
 /// As palms of any shape.
@@ -182,7 +189,6 @@ fn bad_input_is_refused() {
         (follow("bare.csv", "scene.toml"), 3, "--without-forces"),
         (follow("one.csv", "scene.toml"), 3, "1 sample(s)"),
         (follow("none_yet.csv", "scene.toml"), 3, "0 sample(s)"),
-        (follow("back.csv", "scene.toml"), 3, "line 32"),
         (follow("none.csv", "scene.toml"), 3, "none.csv"),
         (vec!["follow", "log.csv", "--scene", "scene.toml", "--rate", "0"], 2, "positive"),
         (vec!["reconstruct", "log.csv", "--without-forces"], 3, "--scene"),
@@ -194,6 +200,10 @@ fn bad_input_is_refused() {
         assert!(run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
         assert!(!scratch.path().join("motion.csv").exists() && !scratch.path().join("recon-out").exists());
     }
+    // What was followed before time runs back is kept.
+    let run = scratch.run(&follow("back.csv", "scene.toml"));
+    assert!(run.code == Some(3) && run.stderr.contains("line 32"), "{}", run.stderr);
+    assert_eq!(Table::parse(&scratch.read("motion.csv")).rows.len(), 3);
     // Forty samples are no motion, and the table says so.
     let run = scratch.run(&follow("log.csv", "scene.toml"));
     assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);

@@ -30,6 +30,9 @@ pub enum LogFileErrorKind {
     /// Nothing in it.
     #[error("is empty; a sensor log has a header row and at least two samples")]
     Empty,
+    /// A header, and nothing after it.
+    #[error("has a header and no row after it; a push has a sample in each row, and two samples at least")]
+    NoRows,
     /// A column that every log needs is not there.
     #[error("column `{column}` is missing{}; found: {found}{}", hint(similar.as_deref()), advice(found))]
     MissingColumn {

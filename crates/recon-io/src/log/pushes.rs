@@ -149,7 +149,7 @@ fn joined(samples: Samples, poses: &Poses) -> Result<BTreeMap<u32, PushLog>, Kin
         Ok((log, made))
     };
     if logs.is_empty() {
-        return Err(Kind::Empty);
+        return Err(Kind::NoRows);
     }
     logs.into_iter().map(one).collect()
 }

@@ -3,7 +3,7 @@
 use super::model::NoiseError;
 use super::quantile;
 use super::windows::Window;
-use crate::halves::by_halves;
+use contact_kinematics::by_halves;
 use exact_hull::HalfSpace;
 use exact_hull::{Intersection, Polyhedron};
 use glam::DVec3;

@@ -140,7 +140,7 @@ impl Window {
         };
         let units = cold::units(&record, self.options.gravity, length);
         let natural = length / units.speed;
-        self.options = self.stated.with_noise(self.stated.rougher(&log, &units));
+        self.options = self.stated.roughened(self.stated.rougher(&log), &units).0;
         outcome.natural = Some(natural);
         self.natural = natural;
         outcome.lacks = Some(SHORTEST - log.duration() / natural).filter(|lacks| *lacks > 0.0);

@@ -141,7 +141,7 @@ fn roughness(times: &[f64], contact: impl Fn(usize, usize) -> [f64; 2]) -> f64 {
     let mut rough = Rough::default();
     for i in 0..3 {
         let point = |k: usize| Some(DVec3::new(contact(i, k)[0], contact(i, k)[1], 0.0));
-        rough.add(times, point, |_| vec![DVec3::X, DVec3::Y]);
+        rough.add(times, point, |_| [DVec3::X, DVec3::Y].into());
     }
     rough.deviation()
 }

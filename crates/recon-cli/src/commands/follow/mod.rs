@@ -7,7 +7,7 @@ mod words;
 use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
-use crate::interrupt::{Checked, check, while_writing};
+use crate::interrupt::{check, while_writing};
 use crate::pipeline::{condition_floor, known_body};
 use crate::progress::Progress;
 use input::Samples;
@@ -50,19 +50,30 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
         Some((path, target)) => while_writing(|| {
             let mut file = target.begin()?;
             let run = Run { stream, every: args.every, console, json: false };
-            let followed = run.all(samples, Checked(&mut file)).map_err(|failure| match failure {
-                Failure::Written(source) => {
-                    OutputError::Io { action: "write", path: path.clone(), source }.into()
+            let mut followed = Followed::default();
+            // Whether to stop is asked between rows, which are written whole.
+            match run.all(samples, &mut file, &mut followed) {
+                Ok(()) => file.commit()?,
+                Err(Failure::Written(source)) => {
+                    return Err(OutputError::Io { action: "write", path: path.clone(), source }.into());
                 }
-                Failure::Other(error) => error,
-            })?;
-            file.commit()?;
+                // Whatever ends it, a row that is wrong or the user: what was followed until then is not lost.
+                Err(Failure::Other(error)) => {
+                    if let Some(last) = &followed.last {
+                        file.commit()?;
+                        let (t, path) = (last.t, path.display());
+                        console.note(&format!("t = {t:.3} s: what was followed until then is in {path}"));
+                    }
+                    return Err(error);
+                }
+            }
             Ok(followed)
         })?,
         None => {
             let run = Run { stream, every: args.every, console, json: console.is_json() };
-            match run.all(samples, io::stdout().lock()) {
-                Ok(followed) => followed,
+            let mut followed = Followed::default();
+            match run.all(samples, io::stdout().lock(), &mut followed) {
+                Ok(()) => followed,
                 Err(Failure::Other(error)) => return Err(error),
                 // Whoever reads has had what it wanted.
                 Err(Failure::Written(error)) => return listened(Err(error)).map(|()| Outcome::Done),
@@ -175,8 +186,12 @@ struct Followed {
 }
 
 impl Run<'_> {
-    fn all(mut self, mut samples: Samples<'_>, mut to: impl Write) -> Result<Followed, Failure> {
-        let mut followed = Followed::default();
+    fn all(
+        mut self,
+        mut samples: Samples<'_>,
+        mut to: impl Write,
+        followed: &mut Followed,
+    ) -> Result<(), Failure> {
         let mut rows = Rows { every: self.every, first: None, latest: -1.0 };
         let palms = self.stream.palms_with_modes();
         if !self.json {
@@ -199,9 +214,9 @@ impl Run<'_> {
             }
         }
         to.flush()?;
-        let left_out = samples.left_out + self.stream.left_out();
-        followed.palms = palms;
-        Ok(Followed { samples: samples.rows, left_out, why: samples.why, ..followed })
+        followed.left_out = samples.left_out + self.stream.left_out();
+        (followed.palms, followed.samples, followed.why) = (palms, samples.rows, samples.why);
+        Ok(())
     }
 
     /// Says when a motion is found, and when the data contradict it.

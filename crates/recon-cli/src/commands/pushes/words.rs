@@ -1,7 +1,7 @@
 //! What is said of pushes: the verdict, what the reader must know, the summary.
 
 use super::Told;
-use recon::observer::pushes::PushFriction;
+use recon::observer::pushes::{OutlinePoint, PushFriction};
 use recon_io::{Level, SummaryOf, Verdict, brief_to, verdict_figures};
 use serde_json::{Value, json};
 
@@ -179,5 +179,38 @@ pub(super) fn described(told: &Told, only: bool) -> String {
         let name = format!("corner {}", k + 1);
         text += &format!("  {name:<22} ({x:.2}, {y:.2}) ± {:.2} mm\n", 1e3 * c.deviation());
     }
-    text
+    if let Some(point) = least_known(told) {
+        let [x, y] = point.point.to_array().map(|v| (1e3 * v).round() + 0.0);
+        text += &format!(
+            "  least known            outline at ({x:.0}, {y:.0}) ± {:.2} mm\n",
+            1e3 * point.deviation
+        );
+    }
+    text + &format!("  next                   {}\n", next(told))
+}
+
+/// Where the outline is least known.
+fn least_known(told: &Told) -> Option<&OutlinePoint> {
+    told.estimate.outline.points.iter().max_by(|a, b| a.deviation.total_cmp(&b.deviation))
+}
+
+/// The step that gains most.
+fn next(told: &Told) -> String {
+    if verdict(told).level != Level::Good {
+        return if told.estimate.friction.is_none() {
+            "push more obliquely: friction is told by pushes in which the finger slides".to_owned()
+        } else {
+            "see report.html for the pushes that do not go with the others".to_owned()
+        };
+    }
+    match least_known(told) {
+        Some(point) => {
+            let [x, y] = point.point.to_array().map(|v| (1e3 * v).round() + 0.0);
+            let towards = (-point.normal.y).atan2(-point.normal.x).to_degrees();
+            format!(
+                "push at ({x:.0}, {y:.0}) mm of the object, towards {towards:.0} degrees: its outline is least known there"
+            )
+        }
+        None => "nothing is left that pushes could tell".to_owned(),
+    }
 }

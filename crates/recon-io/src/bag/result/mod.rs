@@ -1,4 +1,4 @@
-//! Results as a bag, which Foxglove and Rerun show as it is: motion, contacts, forces, bounds; Rerun, which has no markers, as frames and points.
+//! Results as a bag, which Foxglove and Rerun show as it is: motion, contacts, forces, bounds; Rerun, which has no markers, as frames and points all over.
 
 mod definitions;
 mod encode;
@@ -62,12 +62,15 @@ pub struct ResultContact {
 }
 
 impl ResultBag<'_> {
+    /// Points by which a bound is drawn for viewers without markers, about: they stand a few pixels apart on a screen.
+    pub const OVER_BOUND: usize = 10_000;
+
     /// The bag, whole: profile `ros2`, messages in CDR, chunks packed by zstd.
     ///
     /// Topics: `/tf` (`object` in `world`), `/recon/pose` with covariance, `/recon/palm_i/contact` (`recon_msgs/msg/Contact`), `/recon/markers`
     /// (contacts and forces, at most 100 a second), `/recon/contacts` and `/recon/forces` (their points and
-    /// points along the arrows, as often, for viewers without markers), `/recon/bounds` (meshes), `/recon/contact_curves`, `/recon/lower_bound` and
-    /// `/recon/upper_bound` (their points).
+    /// points along the arrows, as often, for viewers without markers), `/recon/bounds` (meshes), `/recon/lower_bound` and
+    /// `/recon/upper_bound` (corners and points all over them, for the same viewers), `/recon/contact_curves`.
     ///
     /// # Errors
     /// Those of packing, which a whole memory has none of.
@@ -111,7 +114,12 @@ impl ResultBag<'_> {
             let corner = |index: &u32| mesh.vertices.get(*index as usize).copied();
             let points: Vec<DVec3> = mesh.triangles.iter().flatten().filter_map(corner).collect();
             let topic = format!("/recon/{name}_bound");
-            bag.write(&topic, Definition::PointCloud2, time, &encode::cloud(header, &mesh.vertices))?;
+            bag.write(
+                &topic,
+                Definition::PointCloud2,
+                time,
+                &encode::cloud(header, &mesh.spread(Self::OVER_BOUND)),
+            )?;
             meshes.push(Marker::triangles(header, name, id, points).with_frame(color));
         }
         bag.write("/recon/bounds", Definition::MarkerArray, time, &encode::markers(&meshes))?;
