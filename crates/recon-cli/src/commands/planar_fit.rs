@@ -169,6 +169,7 @@ pub(super) fn page(made: &Fitted, title: &str) -> FiguresPage {
         panels: panels(made),
         caption: "Contact points on the object, its orientation, and the radius functions at the contacts."
             .to_owned(),
+        table: FiguresPage::RESTS_ON,
         evidence: vec![
             row(
                 "residual",

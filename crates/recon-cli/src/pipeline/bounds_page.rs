@@ -51,6 +51,7 @@ pub(crate) fn bounds_page(
         heading: "Bounds on the shape",
         panels: views(&bodies, &dots, next).into_iter().chain(marked).collect(),
         caption: format!("{IN_SPACE}{touch}{marked_below}"),
+        table: FiguresPage::RESTS_ON,
         evidence: evidence(about, made.contradiction),
     }
 }
@@ -72,6 +73,7 @@ pub(crate) fn plane_bounds_page(
         heading: "Bounds on the outline",
         panels,
         caption: IN_PLANE.to_owned(),
+        table: FiguresPage::RESTS_ON,
         evidence: evidence(&made.about, made.contradiction),
     }
 }

@@ -26,6 +26,7 @@ pub(crate) fn without_forces_page(title: &str, made: &WithoutForces) -> FiguresP
         caption: "The bounds and the fitted ellipsoid as they are seen along the body axes and from all around, with the contacts and the centre of mass, \
                   and the motion over time with bands of two deviations."
             .to_owned(),
+        table: FiguresPage::RESTS_ON,
         evidence: rows(made),
     }
 }

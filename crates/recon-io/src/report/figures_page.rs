@@ -26,8 +26,15 @@ pub struct FiguresPage {
     pub panels: Vec<FigurePanel>,
     /// What they show.
     pub caption: String,
-    /// What the result rests on.
+    /// What the table of the last part tells, such as [`FiguresPage::RESTS_ON`].
+    pub table: &'static str,
+    /// Its rows.
     pub evidence: Vec<Evidence>,
+}
+
+impl FiguresPage {
+    /// What a result rests on.
+    pub const RESTS_ON: &'static str = "What the result rests on";
 }
 
 /// Writes such a result as one HTML page that needs nothing else.
@@ -36,7 +43,7 @@ pub struct FiguresPage {
 /// Those of `to`.
 pub fn write_figures_page(page: &FiguresPage, to: impl Write) -> io::Result<()> {
     let body = curves_section(page.heading, &page.panels, &page.caption)
-        + &evidence_section("What the result rests on", &rows(&page.evidence));
+        + &evidence_section(page.table, &rows(&page.evidence));
     let verdict = notices(&page.verdict, ["Good", "With care", "Unreliable"], &page.warnings);
     Page { kicker: page.kicker, title: &page.title, verdict, facts: &page.facts, body }.write(to)
 }
@@ -57,6 +64,7 @@ mod tests {
             heading: "Views",
             panels: vec![FigurePanel::default()],
             caption: "c".to_owned(),
+            table: FiguresPage::RESTS_ON,
             evidence: vec![Evidence {
                 key: "k".to_owned(),
                 name: "Name".to_owned(),

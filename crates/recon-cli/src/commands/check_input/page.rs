@@ -43,6 +43,7 @@ pub(super) fn page(title: String, understood: &Understood) -> FiguresPage {
         heading,
         panels,
         caption: caption.to_owned(),
+        table: "What was understood",
         evidence: lines.iter().map(row).collect(),
     }
 }

@@ -208,7 +208,7 @@ fn next(told: &Told) -> String {
             let [x, y] = point.point.to_array().map(|v| (1e3 * v).round() + 0.0);
             let towards = (-point.normal.y).atan2(-point.normal.x).to_degrees();
             format!(
-                "push at ({x:.0}, {y:.0}) mm of the object, towards {towards:.0} degrees: its outline is least known there"
+                "push at ({x:.0}, {y:.0}) mm of the object, towards {towards:.0}°: its outline is least known there"
             )
         }
         None => "nothing is left that pushes could tell".to_owned(),
