@@ -4,7 +4,7 @@ use super::error::BagErrorKind as Kind;
 use super::palm::{PalmStreams, Standing, Steady, Touched};
 use crate::{PalmSetup, brief_to};
 use glam::DVec3;
-use recon::contact_kinematics::{PoseTable, SurfacePose};
+use recon::contact_kinematics::{PoseTable, SurfacePose, by_halves};
 use recon::object_dynamics::{
     ContactPoints, ForceChannel, PalmRecord, PoseTrack, RecordedMotion, Rhythm, TrueState, TurnAndShift,
 };
@@ -50,13 +50,16 @@ impl Samples {
         let palms = streams.iter().map(|_| PalmSamples::default()).collect();
         let mut made = Self { times: Vec::new(), palms, truth: Vec::new(), left_out: 0, lacks: Vec::new() };
         let true_longest = truth.map_or(0.0, |truth| Rhythm::of(truth.times()).longest());
-        for &t in times {
-            let instants: Result<Vec<Instant>, String> =
-                streams.iter().map(|palm| instant(palm, t)).collect();
+        let at = |t: f64| -> Result<(Vec<Instant>, Option<SurfacePose>), String> {
+            let instants = streams.iter().map(|palm| instant(palm, t)).collect::<Result<_, _>>()?;
+            Ok((instants, truth.and_then(|truth| truth.at(t, true_longest))))
+        };
+        let all = by_halves(times, |times| times.iter().map(|&t| at(t)).collect());
+        for (&t, instants) in times.iter().zip(all) {
             match instants {
-                Ok(instants) => {
+                Ok((instants, truth)) => {
                     made.times.push(t);
-                    made.truth.push(truth.and_then(|truth| truth.at(t, true_longest)));
+                    made.truth.push(truth);
                     made.palms.iter_mut().zip(instants).for_each(|(palm, instant)| palm.push(instant));
                 }
                 Err(what) => {
