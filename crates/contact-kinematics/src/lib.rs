@@ -47,7 +47,7 @@ pub use contact::{
     acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
     radius_rate, separation_rates,
 };
-pub use halves::{at_once, by_halves, one_by_one};
+pub use halves::{at_once, by_halves};
 pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use stop::{Stopped, is_stopped, unless_stopped};

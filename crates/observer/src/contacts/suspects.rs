@@ -22,7 +22,7 @@ use super::verdict::ContactEvidence;
 use crate::doubted;
 use crate::faults::{SensorFault, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
-use contact_kinematics::{PalmSurface, one_by_one};
+use contact_kinematics::{PalmSurface, by_halves};
 use glam::DVec3;
 use object_dynamics::ContactLog;
 use std::borrow::Cow;
@@ -216,7 +216,7 @@ fn followed(
     };
     // Each is a pass over all samples: two at a time.
     let constants = scores.sensors.constants(problem);
-    one_by_one(&constants, |fault| one(*fault)).into_iter().flatten().collect()
+    by_halves(&constants, |faults| faults.iter().copied().filter_map(one).collect())
 }
 
 /// Share of noise in the squares of the impulses.

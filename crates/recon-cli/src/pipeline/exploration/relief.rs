@@ -10,7 +10,7 @@ use super::story::Explored;
 use crate::cli::GoalArgs;
 use crate::error::{CliError, Outcome as Exit};
 use crate::pipeline::bounds::{LOWER, UPPER, own};
-use recon::contact_kinematics::{Direction, at_once};
+use recon::contact_kinematics::{Direction, by_halves};
 use recon::exploration::Heading;
 use recon::exploration::contour::Margins;
 use recon::exploration::relief::{
@@ -141,10 +141,8 @@ impl Known {
         known.volume = Some(bounds.volume_at_most());
         known.lower = bounds.hull();
         let along = <Direction as Heading>::spread(HALF_SPACES);
-        let (here, there) = along.split_at(along.len() / 2);
-        let of = |some: &[Direction]| some.iter().map(|n| (*n, bounds.support(*n))).collect::<Vec<_>>();
-        let (mut sides, rest) = at_once(|| of(here), || of(there));
-        sides.extend(rest);
+        let of = |some: &[Direction]| some.iter().map(|n| (*n, bounds.support(*n))).collect();
+        let sides: Vec<_> = by_halves(&along, of);
         let all: Vec<HalfSpace> = sides.iter().map(half_space).collect();
         known.upper = Intersection::of(&all)?.bounded().cloned();
         known.gap = sides.iter().map(|(_, (low, high))| high - low).fold(0.0, f64::max);

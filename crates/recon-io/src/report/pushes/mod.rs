@@ -6,6 +6,7 @@ mod outline;
 mod panels;
 
 use super::Verdict;
+use super::figures_page::FiguresPage;
 use super::notices::notices;
 use super::page::{Fact, Page, curves_section, evidence_section, section, tiles};
 use crate::number::brief_to;
@@ -57,7 +58,7 @@ fn of_log(log: &PushedLog) -> String {
     let bands = section("Sticking and sliding", &bands, BANDS);
     let curves = curves_section("Friction, and what the fit leaves", &panels::panels(log.told), CURVES);
     let (facts, evidence) =
-        (tiles(&facts(log)), evidence_section("What the result rests on", &evidence::rows(log)));
+        (tiles(&facts(log)), evidence_section(FiguresPage::RESTS_ON, &evidence::rows(log)));
     format!(
         "<section class=\"pushed\" aria-label=\"{name}\">\n{heading}{verdict}{facts}\
          <div class=\"pair\">\n{outline}{bands}</div>\n{curves}{evidence}</section>\n"
