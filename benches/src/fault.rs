@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use recon::contact_kinematics::{Direction, PalmFrame};
 use recon::object_dynamics::{MassProperties, Sample, SensorLog};
-use recon::observer::faults::{Assumption, SensorFault};
+use recon::observer::faults::{Assumption, Constant};
 use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;
@@ -101,13 +101,15 @@ impl Fault {
         match (self, assumption) {
             (Self::Mass(_) | Self::Inertia(_) | Self::Moment(_), Assumption::Body)
             | (Self::Taxels(_) | Self::Outliers(_), Assumption::Noise) => true,
-            (_, Assumption::Sensor(fault)) => matches!(
+            (_, Assumption::One(fault)) => matches!(
                 (self, fault),
-                (Self::Bias(_), SensorFault::ForceBias { palm: 1 })
-                    | (Self::Gain(_), SensorFault::ForceGain { palm: 1 })
-                    | (Self::Delay(_) | Self::Lag(_), SensorFault::ForceDelay)
-                    | (Self::Turned(_), SensorFault::PalmTilt { palm: 1, axis: 0 })
-                    | (Self::Shifted(_), SensorFault::ContactOffset { palm: 1, axis: 0 })
+                (Self::Bias(_), Constant::ForceBias { palm: 1 })
+                    | (Self::Gain(_), Constant::ForceGain { palm: 1 })
+                    | (Self::Delay(_) | Self::Lag(_), Constant::ForceDelay)
+                    | (Self::Turned(_), Constant::PalmTilt { palm: 1, axis: 0 })
+                    | (Self::Shifted(_), Constant::ContactOffset { palm: 1, axis: 0 })
+                    | (Self::Mass(_), Constant::Mass)
+                    | (Self::Inertia(_) | Self::Moment(_), Constant::Moment { .. })
             ),
             _ => false,
         }

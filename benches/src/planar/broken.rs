@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use recon::object_dynamics::planar::*;
-use recon::observer::faults::SensorFault;
+use recon::observer::faults::Constant;
 use recon_tests::Random;
 
 type Failure = Box<dyn std::error::Error>;
@@ -110,13 +110,13 @@ impl Wrong {
 
     /// The constant of the sensors that it is, and its value.
     #[must_use]
-    pub fn constant(self, scene: &Scene) -> Option<(SensorFault, f64)> {
+    pub fn constant(self, scene: &Scene) -> Option<(Constant, f64)> {
         match self {
-            Self::ForcesLate(age) => Some((SensorFault::ForceDelay, age)),
-            Self::ContactsLate(age) => Some((SensorFault::ContactDelay, age)),
-            Self::Palm(by) => Some((SensorFault::PalmTilt { palm: 2, axis: 1 }, by.to_radians())),
-            Self::Gain(by) => Some((SensorFault::ForceGain { palm: 1 }, by)),
-            Self::Bias(by) => Some((SensorFault::ForceBias { palm: 1 }, by * scene.weight())),
+            Self::ForcesLate(age) => Some((Constant::ForceDelay, age)),
+            Self::ContactsLate(age) => Some((Constant::ContactDelay, age)),
+            Self::Palm(by) => Some((Constant::PalmTilt { palm: 2, axis: 1 }, by.to_radians())),
+            Self::Gain(by) => Some((Constant::ForceGain { palm: 1 }, by)),
+            Self::Bias(by) => Some((Constant::ForceBias { palm: 1 }, by * scene.weight())),
             _ => None,
         }
     }

@@ -6,7 +6,7 @@ use crate::whole_logs::body::{self, Body};
 use crate::whole_logs::options;
 use recon::object_dynamics::ContactLog;
 use recon::observer::contacts::{ContactEstimate, estimate_contacts};
-use recon::observer::faults::{Assumption, SensorFault};
+use recon::observer::faults::{Assumption, Constant};
 use recon_benches::fault::Fault;
 
 type Failure = Box<dyn std::error::Error>;
@@ -138,15 +138,14 @@ fn scores(body: &Body, noise: f64, rate: f64, known: bool) -> Result<Option<(usi
     let options = options(body, noise, known.then_some(body.mass));
     let Ok(found) = estimate_contacts(&ContactLog::try_from(&log)?, None, &options) else { return Ok(None) };
     let kind = |fault| match fault {
-        SensorFault::ForceGain { .. } => 0,
-        SensorFault::ForceBias { .. } => 1,
-        SensorFault::ForceDelay => 2,
-        SensorFault::ContactOffset { .. } => 3,
+        Constant::ForceGain { .. } => 0,
+        Constant::ForceBias { .. } => 1,
+        Constant::ForceDelay => 2,
+        Constant::ContactOffset { .. } => 3,
         _ => 4,
     };
     let mut scores = [None; 20];
-    let told =
-        found.suspects.iter().filter(|of| of.deviation.is_finite() && of.fault != SensorFault::Friction);
+    let told = found.suspects.iter().filter(|of| of.deviation.is_finite() && of.fault != Constant::Friction);
     for (score, suspect) in scores.iter_mut().zip(told) {
         *score = Some((kind(suspect.fault), suspect.score()));
     }

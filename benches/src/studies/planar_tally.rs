@@ -3,7 +3,7 @@
 use crate::rows::RowsError;
 use cpu_time::ThreadTime;
 use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
-use recon::observer::faults::SensorFault;
+use recon::observer::faults::Constant;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 
 /// Deviations beyond which an error that nothing warned of is silent.
@@ -35,7 +35,7 @@ impl Tally {
         log: &ContactLog,
         options: &PlaneOptions,
         length: f64,
-        wrong: Option<(SensorFault, f64)>,
+        wrong: Option<(Constant, f64)>,
     ) -> Result<(), RowsError> {
         let run = crate::rows::row(|| -> Result<Run, RowsError> {
             let clock = ThreadTime::now();
@@ -87,7 +87,7 @@ impl Tally {
 }
 
 /// What is wrong of the sensors in the deviation that is stated of it; zero where none is.
-fn told(made: &PlaneEstimate, wrong: Option<(SensorFault, f64)>) -> f64 {
+fn told(made: &PlaneEstimate, wrong: Option<(Constant, f64)>) -> f64 {
     wrong.map_or(0.0, |(fault, value)| {
         let own = made.suspects.iter().find(|suspect| suspect.fault == fault);
         own.map_or(0.0, |suspect| value.abs() / suspect.deviation)

@@ -1,10 +1,10 @@
-//! What may be wrong with sensors, and what data say of it.
+//! What may be wrong with sensors and with a stated body, and what data say of it.
 //!
 //! ```
-//! use observer::faults::{SensorFault, Suspect};
+//! use observer::faults::{Constant, Suspect};
 //!
 //! // The second palm seems to say 4 % too little, and more than 1 % would turn the motion.
-//! let fault = SensorFault::ForceGain { palm: 2 };
+//! let fault = Constant::ForceGain { palm: 2 };
 //! let suspect = Suspect { fault, value: 0.04, deviation: 0.005, tolerated: 0.01 };
 //! assert_eq!(suspect.score(), 8.0); // deviations: not by chance
 //! assert!(suspect.untold() > 1.0); // a gain that goes unseen may be off by more than the motion bears
@@ -16,9 +16,9 @@ use std::fmt;
 /// Deviations from which on a two-sided test at one in a hundred (2.576 of them) tells nine times in ten (1.282 more).
 const TOLD: f64 = 3.858;
 
-/// A constant of the sensors.
+/// A constant that was taken as known: of the sensors, or of a stated body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SensorFault {
+pub enum Constant {
     /// Share by which the forces of a palm are more than it says.
     ForceGain {
         /// Number from 1.
@@ -49,13 +49,28 @@ pub enum SensorFault {
     },
     /// Friction of all palms that are taken for frictionless.
     Friction,
+    /// Share by which the mass is more than stated, the inertia as it is. Tested in space.
+    Mass,
+    /// Share by which a principal moment of inertia is more than stated, the others as they are. Tested in space.
+    Moment {
+        /// Its place: 0 for the smallest, 2 for the largest.
+        axis: usize,
+    },
+}
+
+impl Constant {
+    /// Whether it is one of a stated body.
+    #[must_use]
+    pub fn is_of_body(self) -> bool {
+        matches!(self, Self::Mass | Self::Moment { .. })
+    }
 }
 
 /// What the data say of one such constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suspect {
     /// The constant.
-    pub fault: SensorFault,
+    pub fault: Constant,
     /// What it is beside what it was taken for, to first order.
     pub value: f64,
     /// Standard deviation of that: infinite where the data cannot tell.
@@ -89,8 +104,8 @@ impl Suspect {
 pub enum Assumption {
     /// Nothing is wrong.
     None,
-    /// One constant of the sensors.
-    Sensor(SensorFault),
+    /// One constant.
+    One(Constant),
     /// Mass and inertia of the body.
     Body,
     /// How noisy the readings are.
@@ -116,14 +131,14 @@ impl fmt::Display for Assumption {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => write!(f, "nothing is wrong"),
-            Self::Sensor(fault) => write!(f, "{fault}"),
+            Self::One(fault) => write!(f, "{fault}"),
             Self::Body => write!(f, "mass and inertia; factor of the mass less 1"),
             Self::Noise => write!(f, "noise of all readings (or a wrong motion), its factor less 1"),
         }
     }
 }
 
-impl fmt::Display for SensorFault {
+impl fmt::Display for Constant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = |axis: usize| ["x", "y"][axis.min(1)];
         match *self {
@@ -138,6 +153,11 @@ impl fmt::Display for SensorFault {
                 write!(f, "tilt of palm {palm} about its {} axis (rad)", name(axis))
             }
             Self::Friction => write!(f, "coefficient of friction"),
+            Self::Mass => write!(f, "mass over the stated one, less 1"),
+            Self::Moment { axis } => {
+                let which = ["smallest", "middle", "largest"][axis.min(2)];
+                write!(f, "{which} moment of inertia over the stated one, less 1")
+            }
         }
     }
 }

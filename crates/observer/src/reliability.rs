@@ -96,10 +96,13 @@ impl fmt::Display for Reason {
             Self::NotConverged { iterations } => {
                 write!(f, "the fit did not settle in {iterations} iterations")
             }
-            Self::Fault(suspect) => write!(
-                f,
-                "the data speak for a wrong constant of the sensors, most of all for this one: {suspect}"
-            ),
+            Self::Fault(suspect) => {
+                let of = if suspect.fault.is_of_body() { "body" } else { "sensors" };
+                write!(
+                    f,
+                    "the data speak for a wrong constant of the {of}, most of all for this one: {suspect}"
+                )
+            }
             Self::OtherBody { mass, deviations, squares } => write!(
                 f,
                 "the stated mass and inertia are not those of this object: without them the mass comes out {mass:.4} times as large, which is \

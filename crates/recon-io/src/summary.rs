@@ -7,7 +7,7 @@ use crate::report::{
 use glam::DMat3;
 use recon::observer::contact_modes::{ContactModesDoubt, LearnedFriction};
 use recon::observer::contacts::EstimatedModes;
-use recon::observer::faults::{Assumption, Explanation, SensorFault, Suspect};
+use recon::observer::faults::{Assumption, Constant, Explanation, Suspect};
 use serde_json::{Map, Value, json};
 
 /// What a `summary.json` is of. Its keys are those of `docs/schema/summary.schema.json`.
@@ -165,7 +165,7 @@ pub fn verdict_figures(verdict: &Verdict) -> Value {
     json!({ "level": level(verdict.level), "text": verdict.text })
 }
 
-/// What the data say of a constant of the sensors.
+/// What the data say of a constant that was taken as known.
 #[must_use]
 pub fn sensor_fault(of: &Suspect) -> Value {
     let mut said = constant(of.fault);
@@ -184,7 +184,7 @@ pub fn sensor_fault(of: &Suspect) -> Value {
 pub fn explanation(of: &Explanation) -> Value {
     let mut said = match of.assumption {
         Assumption::None => json!({ "constant": "none" }),
-        Assumption::Sensor(fault) => constant(fault),
+        Assumption::One(fault) => constant(fault),
         Assumption::Body => json!({ "constant": "mass_and_inertia" }),
         Assumption::Noise => json!({ "constant": "noise" }),
     };
@@ -195,16 +195,21 @@ pub fn explanation(of: &Explanation) -> Value {
     said
 }
 
-/// A constant of the sensors by its name, palm and axis.
-fn constant(fault: SensorFault) -> Value {
+/// A constant by its name, palm and axis.
+fn constant(fault: Constant) -> Value {
     let (kind, palm, axis) = match fault {
-        SensorFault::ForceGain { palm } => ("force_gain", Some(palm), None),
-        SensorFault::ForceBias { palm } => ("force_bias_n", Some(palm), None),
-        SensorFault::ForceDelay => ("force_delay_s", None, None),
-        SensorFault::ContactDelay => ("contact_delay_s", None, None),
-        SensorFault::ContactOffset { palm, axis } => ("contact_offset_m", Some(palm), Some(axis)),
-        SensorFault::PalmTilt { palm, axis } => ("palm_tilt_rad", Some(palm), Some(axis)),
-        SensorFault::Friction => ("friction", None, None),
+        Constant::ForceGain { palm } => ("force_gain", Some(palm), None),
+        Constant::ForceBias { palm } => ("force_bias_n", Some(palm), None),
+        Constant::ForceDelay => ("force_delay_s", None, None),
+        Constant::ContactDelay => ("contact_delay_s", None, None),
+        Constant::ContactOffset { palm, axis } => ("contact_offset_m", Some(palm), Some(axis)),
+        Constant::PalmTilt { palm, axis } => ("palm_tilt_rad", Some(palm), Some(axis)),
+        Constant::Friction => ("friction", None, None),
+        Constant::Mass => ("mass", None, None),
+        Constant::Moment { axis } => {
+            let which = ["smallest", "middle", "largest"][axis.min(2)];
+            return json!({ "constant": "moment", "moment": which });
+        }
     };
     let mut said = json!({ "constant": kind });
     if let Some(palm) = palm {

@@ -4,7 +4,7 @@ use crate::planar_common::{errors, noise_level, options, scene, times};
 use recon::object_dynamics::planar::*;
 use recon::object_dynamics::{ChannelNoise, ContactNoise};
 use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
-use recon::observer::faults::SensorFault;
+use recon::observer::faults::Constant;
 use recon::observer::planar::*;
 use recon_tests::few_or_all;
 
@@ -74,7 +74,7 @@ fn late_contacts_are_told_from_those_on_time() {
         let late_ones = late_ones.map(|(now, then)| PlanarSample { contacts: then.contacts, ..*now });
         let log = PlanarLog::new(late_ones.collect(), Some(truth[late..].to_vec())).unwrap();
         let made = estimate(&log, 1.0, 1.0);
-        *made.suspects.iter().find(|suspect| suspect.fault == SensorFault::ContactDelay).unwrap()
+        *made.suspects.iter().find(|suspect| suspect.fault == Constant::ContactDelay).unwrap()
     };
     let runs = few_or_all(4, 20);
     let scores: Vec<f64> = (0..runs).map(|seed| of(300 + seed, 0).score()).collect();

@@ -3,17 +3,17 @@
 use crate::noisy::{changed, estimated, words};
 use recon::object_dynamics::{SensorLog, SensorNoise};
 use recon::observer::contacts::ContactEstimate;
-use recon::observer::faults::{SensorFault, Suspect};
+use recon::observer::faults::{Constant, Suspect};
 use recon_tests::{exact_log, f5, few_or_all, g2};
 
 const NOISE: SensorNoise = SensorNoise { contact: 2.5e-3, force: 0.065, torque: 0.0 };
 
-fn of(found: &ContactEstimate, fault: SensorFault) -> Suspect {
+fn of(found: &ContactEstimate, fault: Constant) -> Suspect {
     *found.suspects.iter().find(|suspect| suspect.fault == fault).unwrap()
 }
 
 /// To first order, and to within what noise leaves: a value, and how much of it may be beyond first order.
-fn assert_found(found: &ContactEstimate, fault: SensorFault, value: f64, beyond: f64) {
+fn assert_found(found: &ContactEstimate, fault: Constant, value: f64, beyond: f64) {
     let suspect = of(found, fault);
     let error = (suspect.value - value).abs();
     assert!(error < 4.0 * suspect.deviation + beyond * value.abs(), "{suspect}; true {value}");
@@ -51,12 +51,12 @@ fn a_gain_and_a_bias_are_found_within_their_deviations() {
         })
     };
     let gain = estimated(&scene, &with(&|f| f / 1.03), NOISE, true);
-    assert_found(&gain, SensorFault::ForceGain { palm: 3 }, 0.03, 0.2);
+    assert_found(&gain, Constant::ForceGain { palm: 3 }, 0.03, 0.2);
     if few_or_all(true, false) {
         return;
     }
     let bias = estimated(&scene, &with(&|f| f - 0.2), NOISE, true);
-    assert_found(&bias, SensorFault::ForceBias { palm: 3 }, 0.2, 0.2);
+    assert_found(&bias, Constant::ForceBias { palm: 3 }, 0.2, 0.2);
 }
 
 #[test]
@@ -74,5 +74,5 @@ fn a_delay_of_the_forces_is_found() {
     }
     let wrong = SensorLog::new(samples[late..].to_vec(), None).unwrap();
     let found = estimated(&scene, &wrong, NOISE, true);
-    assert_found(&found, SensorFault::ForceDelay, 0.01, 0.2);
+    assert_found(&found, Constant::ForceDelay, 0.01, 0.2);
 }

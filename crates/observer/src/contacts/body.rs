@@ -16,6 +16,9 @@ pub(super) const INERTIA: usize = CONSTANTS - 1;
 /// Change of the logarithms of an unknown inertia up to which a step is straight in its entries: farther on it may lead to no body.
 const STRAIGHT: f64 = 0.7;
 
+/// Change of a logarithm of the root of a second moment with that of a principal moment from which on a body is too thin for that change.
+const THINNEST: f64 = 100.0;
+
 /// Mass and inertia about the centre of mass, in axes that are those of the world at the first sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
@@ -90,6 +93,24 @@ impl Body {
             }
             Constants::Turned(..) => [1.0; INERTIA],
         }
+    }
+
+    /// Whether it is one of known moments.
+    pub(super) fn is_turned(&self) -> bool {
+        matches!(self.constants, Constants::Turned(..))
+    }
+
+    /// How the constants of a known body change with the logarithm of its principal moment `k` alone. None of an unknown one, and where one of the second
+    /// moments is so small a share of it that the body would be none.
+    pub(super) fn by_moment(&self, k: usize) -> Option<SVector<f64, CONSTANTS>> {
+        let Constants::Turned(roots, _) = &self.constants else { return None };
+        let seconds = DVec3::from_array(roots.map(|root| (2.0 * root).exp()));
+        let moment = seconds.element_sum() - seconds[k];
+        // Half of a change of this moment is taken from its own second moment, and half given to each of the others.
+        let root = |i: usize| if i == k { -0.25 } else { 0.25 } * moment / seconds[i];
+        let by =
+            SVector::<f64, CONSTANTS>::from_fn(|i, _| if (1..=3).contains(&i) { root(i - 1) } else { 0.0 });
+        (by.amax() < THINNEST).then_some(by)
     }
 
     /// Covariance of the entries xx, yy, zz, xy, xz, yz of the inertia, by that of the constants.

@@ -360,7 +360,7 @@ impl Source<'_> {
             || !evidence.reliability().is_reliable()
             || ContactEvidence::against(&suspects, &[]).is_some();
         let explanations = match contradicted {
-            true => explanations(&sensors, problem, solved, free.as_ref()),
+            true => explanations(&sensors, problem, solved, &suspects, free.as_ref()),
             false => Vec::new(),
         };
         (Wrong { suspects, explanations }, errors)

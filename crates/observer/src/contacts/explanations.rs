@@ -9,7 +9,7 @@ use super::body::CONSTANTS;
 use super::problem::{Problem, Unknowns};
 use super::solve::{Solved, solve};
 use super::suspects::{Scores, Sensors};
-use crate::faults::{Assumption, Explanation, SensorFault};
+use crate::faults::{Assumption, Constant, Explanation, Suspect};
 use std::f64::consts::{PI, TAU};
 
 /// Half the width, in natural units, within which half of all wrong constants are: a heavy-tailed distribution, so that what is off by far more is less
@@ -45,6 +45,7 @@ pub(super) fn explanations(
     sensors: &Sensors,
     problem: &Problem,
     solved: &Solved<CONSTANTS>,
+    suspects: &[Suspect],
     body: Option<&FreeBody>,
 ) -> Vec<Explanation> {
     let conditions = solved.equations.conditions.max(1) as f64;
@@ -52,7 +53,10 @@ pub(super) fn explanations(
     let mut all =
         vec![Tried { assumption: Assumption::None, value: 0.0, deviation: 0.0, cost: stated, could: 0.0 }];
     all.extend(noise(stated, conditions));
-    all.extend(body.map(other_body));
+    match body {
+        Some(body) => all.push(other_body(body)),
+        None => all.extend(suspects.iter().filter_map(|suspect| of_stated_body(suspect, stated))),
+    }
     all.extend(wrong_sensors(sensors, problem, solved));
     // What even the best leaves unexplained makes all of them less certain.
     let explains = |tried: &&Tried| tried.assumption != Assumption::Noise;
@@ -108,6 +112,19 @@ fn other_body(body: &FreeBody) -> Tried {
     Tried { assumption: Assumption::Body, value: body.mass, deviation, cost: body.cost, could }
 }
 
+/// One constant of a stated body that nothing else speaks against: to first order, as it is off by little then.
+fn of_stated_body(suspect: &Suspect, stated: f64) -> Option<Tried> {
+    let Suspect { fault, value, deviation, .. } = *suspect;
+    let told = fault.is_of_body() && deviation.is_finite();
+    told.then(|| Tried {
+        assumption: Assumption::One(fault),
+        value,
+        deviation,
+        cost: stated - suspect.score().powi(2),
+        could: share(value, deviation, USUAL),
+    })
+}
+
 /// Constants of the sensors of which the data tell, each solved for: those that explain most with their first corrections to the end.
 fn wrong_sensors(sensors: &Sensors, problem: &Problem, stated: &Solved<CONSTANTS>) -> Vec<Tried> {
     let Some(scores) = Scores::new(sensors, problem, stated) else { return Vec::new() };
@@ -134,7 +151,7 @@ fn wrong_sensors(sensors: &Sensors, problem: &Problem, stated: &Solved<CONSTANTS
         all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         all.truncate(KEPT);
     }
-    if let Some(late) = all.iter_mut().find(|correction| correction.fault == SensorFault::ForceDelay) {
+    if let Some(late) = all.iter_mut().find(|correction| correction.fault == Constant::ForceDelay) {
         late.by_samples(sensors, problem);
     }
     all.iter().map(|correction| correction.told(problem)).collect()
@@ -142,7 +159,7 @@ fn wrong_sensors(sensors: &Sensors, problem: &Problem, stated: &Solved<CONSTANTS
 
 /// A constant on its way to where it no longer contradicts the log.
 struct Correction {
-    fault: SensorFault,
+    fault: Constant,
     value: f64,
     /// What it is to be corrected by next.
     step: f64,
@@ -214,6 +231,6 @@ impl Correction {
         let Self { fault, value, deviation, cost, .. } = *self;
         let natural = fault.natural(&problem.units);
         let could = share(value / natural, deviation / natural, USUAL);
-        Tried { assumption: Assumption::Sensor(fault), value, deviation, cost, could }
+        Tried { assumption: Assumption::One(fault), value, deviation, cost, could }
     }
 }

@@ -56,7 +56,7 @@ impl Levers {
     }
 
     /// Changes of the angular velocities by a step.
-    fn turned(&self, step: &Step<CONSTANTS>) -> Vec<Spin> {
+    pub(super) fn turned(&self, step: &Step<CONSTANTS>) -> Vec<Spin> {
         let inertia = step.body.fixed_rows::<INERTIA>(1);
         let one = |((by_motion, by_body), motion): (&(_, SMatrix<f64, 3, INERTIA>), &Tangent)| -> Spin {
             let by_motion: &SMatrix<f64, 3, MOTION> = by_motion;

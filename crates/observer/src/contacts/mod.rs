@@ -81,6 +81,7 @@ mod split;
 mod spurious;
 mod stage;
 mod state;
+mod stated_body;
 mod stepping;
 pub mod stream;
 mod surprise;

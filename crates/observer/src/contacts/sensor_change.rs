@@ -8,7 +8,7 @@ use super::record::Contact;
 use super::samples::Deviations;
 use super::slopes::slopes;
 use super::state::Motion;
-use crate::faults::SensorFault;
+use crate::faults::Constant;
 use crate::random::Normal;
 use crate::rigid::exponential;
 use glam::DVec3;
@@ -21,7 +21,7 @@ const SMOOTH: f64 = 0.12;
 
 /// A change of what a log says, by a constant of the sensors that is not what it was taken for.
 pub(super) struct Change<'a> {
-    pub(super) fault: SensorFault,
+    pub(super) fault: Constant,
     /// Near which the change is small: forces that are late are taken from the samples nearest to when they were by it.
     pub(super) value: f64,
     pub(super) by: f64,
@@ -43,25 +43,25 @@ impl Change<'_> {
         let (number, by) = (contact.palm + 1, self.by);
         let none = ChangeBy::default();
         let by = match self.fault {
-            SensorFault::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
-            SensorFault::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
-            SensorFault::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
-            SensorFault::ContactDelay => {
+            Constant::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
+            Constant::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
+            Constant::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
+            Constant::ContactDelay => {
                 let [own, along] = self.slopes.map(|slopes| slopes[contact.palm][k]);
                 let moved = own * self.value + along * (by - self.value);
                 ChangeBy { c: palm.motion(k).pose.R_WP * moved, ..none }
             }
-            SensorFault::ContactOffset { palm: of, axis } if of == number => {
+            Constant::ContactOffset { palm: of, axis } if of == number => {
                 ChangeBy { c: palm.motion(k).pose.R_WP * (DVec3::AXES[axis] * by), ..none }
             }
-            SensorFault::PalmTilt { palm: of, axis } if of == number => {
+            Constant::PalmTilt { palm: of, axis } if of == number => {
                 let pose = palm.motion(k).pose;
                 let turn = exponential(pose.R_WP * (DVec3::AXES[axis] * by));
                 let turned = |v: DVec3| turn * v - v;
                 let c = turned(contact.c - (pose.p_WP - self.origin));
                 ChangeBy { c, n: turned(contact.n), f: turned(contact.f) }
             }
-            SensorFault::Friction if contact.frictionless => {
+            Constant::Friction if contact.frictionless => {
                 let motion = &self.motions[k].0;
                 let w = self.body.turn(motion.q, motion.L).w;
                 let slip = motion.v + w.cross(contact.c - motion.p) - contact.u;

@@ -1,4 +1,4 @@
-//! What the data speak against of what was taken as known of the sensors: a score test for each constant.
+//! What the data speak against of what was taken as known of the sensors and of a stated body: a score test for each constant.
 //!
 //! With the motion and the body at their most probable, a constant `c` of the sensors that is not what it was taken for leaves a slope
 //! `g` of half the cost in it. Motion and body would follow it; what information on `c` is left then, `I`, says that it is off by `-g / I`, known to
@@ -18,9 +18,10 @@ use super::sensor_change::{
 };
 use super::solve::{Covariances, Reduced, Solved, Step};
 use super::state::{Motion, Tangent};
+use super::stated_body::{CONSTANTS_OF_BODY, StatedBody};
 use super::verdict::ContactEvidence;
 use crate::doubted;
-use crate::faults::{SensorFault, Suspect};
+use crate::faults::{Constant, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::{PalmSurface, by_halves};
 use glam::DVec3;
@@ -84,18 +85,18 @@ impl<'a> Sensors<'a> {
     }
 
     /// The record of a log whose `fault` is known.
-    pub(super) fn without(&self, fault: SensorFault, value: f64) -> Record {
+    pub(super) fn without(&self, fault: Constant, value: f64) -> Record {
         self.changed(fault, [value, 0.0], self.slopes_of(fault))
     }
 
     /// Of what comes late, if it is that.
-    fn slopes_of(&self, fault: SensorFault) -> &'a [Vec<DVec3>] {
+    fn slopes_of(&self, fault: Constant) -> &'a [Vec<DVec3>] {
         let [forces, paths] = &self.readings.slopes;
-        if fault == SensorFault::ContactDelay { paths } else { forces }
+        if fault == Constant::ContactDelay { paths } else { forces }
     }
 
     /// With a value of the constant, and a step from there along which what is late has some `slopes`.
-    fn changed(&self, fault: SensorFault, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Record {
+    fn changed(&self, fault: Constant, [value, step]: [f64; 2], slopes: &[Vec<DVec3>]) -> Record {
         let Self { readings: Readings { log, averages, .. }, motions, ref body } = *self;
         let slopes = [self.slopes_of(fault), slopes];
         let origin = averages.origin();
@@ -104,7 +105,7 @@ impl<'a> Sensors<'a> {
     }
 
     /// Constants that the log may have.
-    pub(super) fn constants(&self, problem: &Problem) -> Vec<SensorFault> {
+    pub(super) fn constants(&self, problem: &Problem) -> Vec<Constant> {
         constants(self.readings.log, problem)
     }
 }
@@ -150,7 +151,7 @@ impl<'a> Scores<'a> {
     }
 
     /// Of a constant that the problem's record has as `value`. None where conditions come or go with it.
-    pub(super) fn of(&self, fault: SensorFault, value: f64) -> Option<Score> {
+    pub(super) fn of(&self, fault: Constant, value: f64) -> Option<Score> {
         let Self { sensors, problem, solved, equations, solver, followed, conditions, residuals, .. } = self;
         let step = STEP * fault.natural(&problem.units);
         let told = |slopes: &[Vec<DVec3>]| {
@@ -166,18 +167,25 @@ impl<'a> Scores<'a> {
         // Noise in slopes poses as information on a delay.
         let (log, units, noise) = (sensors.readings.log, &problem.units, &problem.noise);
         let spurious = match fault {
-            SensorFault::ForceDelay => told(&slopes_of_noise(log, units, noise))?.2,
-            SensorFault::ContactDelay => told(&slopes_of_contact_noise(log, units, noise.contact))?.2,
+            Constant::ForceDelay => told(&slopes_of_noise(log, units, noise))?.2,
+            Constant::ContactDelay => told(&slopes_of_contact_noise(log, units, noise.contact))?.2,
             _ => 0.0,
         };
+        // Noise that forces and their slope share poses as a wrong gain.
+        let posing = if matches!(fault, Constant::ForceGain { .. }) { self.noisy * own / left } else { 0.0 };
+        Some(Score { posing, ..Score::of(slope, [own, left, spurious], follows) })
+    }
+}
+
+impl Score {
+    /// By the slope of half the cost and the information on a constant: its `own`, what is `left` when motion and body have followed it, and what of
+    /// that is noise.
+    pub(super) fn of(slope: f64, [own, left, spurious]: [f64; 3], follows: Step<CONSTANTS>) -> Self {
         let sound = left - spurious;
         let tells = sound > (LEAST_LEFT * own).max(LEAST_SOUND * left) && left.is_finite();
-        // Noise that forces and their slope share poses as a wrong gain.
-        let posing =
-            if matches!(fault, SensorFault::ForceGain { .. }) { self.noisy * own / left } else { 0.0 };
         let (value, deviation) =
             if tells { (-slope / sound, left.sqrt() / sound) } else { (0.0, f64::INFINITY) };
-        Some(Score { value, deviation, posing, follows })
+        Self { value, deviation, posing: 0.0, follows }
     }
 }
 
@@ -204,8 +212,12 @@ fn followed(
     let problem = scores.problem;
     let wider = evidence.widening_of_constants();
     let deviations: Vec<Tangent> = covariances.motions.iter().map(|of| covariances.deviations(of)).collect();
-    let one = |fault: SensorFault| {
-        let score = scores.of(fault, 0.0)?;
+    let body = StatedBody::new(problem, scores.solved, covariances);
+    let one = |fault: Constant| {
+        let score = match &body {
+            Some(body) if fault.is_of_body() => body.score(fault, &scores.solver, &scores.followed),
+            _ => scores.of(fault, 0.0),
+        }?;
         let deviation = (wider * score.deviation).hypot(score.posing);
         // A constant that is known no better than that is beyond what a linearisation tells.
         let far = deviation > LARGEST_DEVIATION * fault.natural(&problem.units);
@@ -215,7 +227,8 @@ fn followed(
         Some((Suspect { fault, value, deviation, tolerated: evidence.widening() / most }, score.follows))
     };
     // Each is a pass over all samples: two at a time.
-    let constants = scores.sensors.constants(problem);
+    let mut constants = scores.sensors.constants(problem);
+    constants.extend(body.iter().flat_map(|_| CONSTANTS_OF_BODY));
     by_halves(&constants, |faults| faults.iter().copied().filter_map(one).collect())
 }
 
@@ -227,7 +240,7 @@ fn share_of_noise(record: &Record) -> f64 {
 }
 
 /// Constants that a log may have: forces that are measured at samples, flat palms for offsets, frictionless ones for friction.
-fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
+fn constants(log: &ContactLog, problem: &Problem) -> Vec<Constant> {
     let mut all = Vec::new();
     let planar = problem.record.contacts.iter().flatten().any(|contact| contact.planar);
     for (i, palm) in log.palms().iter().enumerate() {
@@ -236,37 +249,38 @@ fn constants(log: &ContactLog, problem: &Problem) -> Vec<SensorFault> {
             continue;
         }
         if palm.force_axes().is_some() && !problem.record.all_impulses {
-            all.push(SensorFault::ForceGain { palm: number });
-            all.push(SensorFault::ForceBias { palm: number });
+            all.push(Constant::ForceGain { palm: number });
+            all.push(Constant::ForceBias { palm: number });
         }
         for axis in 0..2 {
             // In the plane contacts are along the palm's x axis, and palms turn about its y axis.
             if palm.surface() == PalmSurface::Plane && !(planar && axis == 1) {
-                all.push(SensorFault::ContactOffset { palm: number, axis });
+                all.push(Constant::ContactOffset { palm: number, axis });
             }
             if !(planar && axis == 0) {
-                all.push(SensorFault::PalmTilt { palm: number, axis });
+                all.push(Constant::PalmTilt { palm: number, axis });
             }
         }
     }
     if !problem.record.all_impulses {
-        all.push(SensorFault::ForceDelay);
+        all.push(Constant::ForceDelay);
     }
     if planar && log.palms().iter().all(|palm| palm.surface() == PalmSurface::Plane) {
-        all.push(SensorFault::ContactDelay);
+        all.push(Constant::ContactDelay);
     }
     if problem.record.contacts.iter().flatten().any(|contact| contact.frictionless) {
-        all.push(SensorFault::Friction);
+        all.push(Constant::Friction);
     }
     all
 }
 
-impl SensorFault {
+impl Constant {
     /// Its natural unit.
     pub(super) fn natural(self, units: &Units) -> f64 {
         let Units { length, speed, mass } = *units;
         match self {
             Self::ForceGain { .. } | Self::PalmTilt { .. } | Self::Friction => 1.0,
+            Self::Mass | Self::Moment { .. } => 1.0,
             Self::ForceBias { .. } => mass * speed * speed / length,
             Self::ForceDelay | Self::ContactDelay => length / speed,
             Self::ContactOffset { .. } => length,

@@ -76,7 +76,7 @@ impl ContactEvidence {
     pub(super) fn against(suspects: &[Suspect], explanations: &[Explanation]) -> Option<Reason> {
         let most = suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs()))?;
         let sensor = |of: &Explanation| match of.assumption {
-            Assumption::Sensor(fault) => {
+            Assumption::One(fault) => {
                 let own = suspects.iter().find(|suspect| suspect.fault == fault)?;
                 Some(Suspect { value: of.value, deviation: of.deviation, ..*own })
             }

@@ -1,4 +1,4 @@
-//! What the data say of constants of the sensors, in words for people.
+//! What the data say of constants of the sensors and of a stated body, in words for people.
 
 use super::any_palms_words::neutral;
 use recon::observer::faults::{Assumption, Explanation, Suspect};
@@ -14,7 +14,7 @@ const TOLD_APART: f64 = 2.0;
 /// Deviations beyond which an error counts as wrong.
 const UNTOLD: f64 = 5.0;
 
-/// What the data say of constants of the sensors, and how well these must be known: those that are farthest off, and those that matter
+/// What the data say of constants that were taken as known, and how well these must be known: those that are farthest off, and those that matter
 /// most.
 pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
     let sorted = |key: fn(&Suspect) -> f64| {
@@ -31,14 +31,14 @@ pub(super) fn suspects(all: &[Suspect]) -> Vec<Evidence> {
         .iter()
         .map(|s| format!("{} {}", s.fault, brief_to(2, s.tolerated)))
         .collect();
-    let meaning = "What was taken as known of the sensors, and what it is to be off by as the data have it (score tests): those that are farthest \
+    let meaning = "What was taken as known of the sensors and of a stated body, and what it is to be off by as the data have it (score tests): those that are farthest \
                    off in their deviations. Beyond 4.75 of them the result is not to be relied on.";
     let matters = "Of each kind the one that matters most: an error as large as this, which need not be seen, moves some number of the \
                    motion by one of its deviations.";
     vec![
         Evidence {
             level: if first.score().abs() > UNEXPLAINED { Level::Bad } else { Level::Good },
-            ..neutral("sensor_faults", "Constants of the sensors", Text(said.join("; ")), "", meaning)
+            ..neutral("sensor_faults", "Constants taken as known", Text(said.join("; ")), "", meaning)
         },
         neutral("sensor_accuracy_needed", "Needed to be known to", Text(needed.join("; ")), "", matters),
         untold(all),
@@ -62,7 +62,7 @@ fn untold(all: &[Suspect]) -> Evidence {
     let said: Vec<String> = of_each_kind(sorted).iter().map(one).collect();
     let said = if said.is_empty() { "nothing that counts".to_owned() } else { said.join("; ") };
     let meaning = "What a score test at one false alarm in a hundred finds less often than nine times in ten, and by how many of its deviations a number of the \
-                   motion may then be off: sensors must be that good by themselves. Of each kind the worst.";
+                   motion may then be off: sensors and a stated body must be that good by themselves. Of each kind the worst.";
     neutral("sensor_not_told", "Not told by the data", Text(said), "", meaning)
 }
 

@@ -2,7 +2,7 @@
 
 use super::frictionless::normal_only;
 use super::*;
-use crate::faults::SensorFault;
+use crate::faults::Constant;
 use crate::reliability::{Reason, Reliability};
 
 /// Ten times as noisy as stated windows are of one sample each, and a search from nothing finds no motion of so many nodes.
@@ -55,6 +55,7 @@ fn what_leaves_no_motion_to_be_found_is_named_by_the_beginning() {
     let found = estimate_contacts(&gain, None, &ContactOptions { suspects: true, ..options(noise) }).unwrap();
     let Reliability::Unreliable(reasons) = &found.reliability else { panic!("relied on") };
     assert!(matches!(reasons[0], Reason::NotConverged { .. }), "{reasons:?}");
-    let gain = |reason: &Reason| matches!(reason, Reason::Fault(of) if of.fault == SensorFault::ForceGain { palm: 2 });
+    let gain =
+        |reason: &Reason| matches!(reason, Reason::Fault(of) if of.fault == Constant::ForceGain { palm: 2 });
     assert!(reasons.iter().any(gain), "{reasons:?}");
 }

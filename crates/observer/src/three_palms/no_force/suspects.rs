@@ -3,7 +3,7 @@
 use super::problem::{DIFFERENCE, Guess, Row, TouchProblem, UNKNOWNS};
 use super::series::{Nodes, Palms};
 use crate::doubted;
-use crate::faults::{SensorFault, Suspect};
+use crate::faults::{Constant, Suspect};
 use contact_kinematics::{PalmFrame, PalmTriple};
 use glam::DQuat;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -22,7 +22,7 @@ pub(super) struct Doubts {
 
 /// A constant that may be wrong, by an error of one deviation.
 pub(super) struct Wrong {
-    fault: SensorFault,
+    fault: Constant,
     /// In natural sizes.
     by: f64,
     /// What the numbers are off by with it, in natural sizes.
@@ -95,28 +95,28 @@ impl Wrong {
 }
 
 /// Tilts of each palm, and offsets of what it feels.
-fn constants() -> impl Iterator<Item = SensorFault> {
+fn constants() -> impl Iterator<Item = Constant> {
     let both = |palm: usize| [0, 1].map(move |axis| (palm, axis));
-    (1..=3).flat_map(both).flat_map(|(palm, axis)| {
-        [SensorFault::PalmTilt { palm, axis }, SensorFault::ContactOffset { palm, axis }]
-    })
+    (1..=3)
+        .flat_map(both)
+        .flat_map(|(palm, axis)| [Constant::PalmTilt { palm, axis }, Constant::ContactOffset { palm, axis }])
 }
 
 /// Natural size of a constant.
-fn unit(problem: &TouchProblem, fault: SensorFault) -> f64 {
-    if let SensorFault::ContactOffset { .. } = fault { problem.length } else { 1.0 }
+fn unit(problem: &TouchProblem, fault: Constant) -> f64 {
+    if let Constant::ContactOffset { .. } = fault { problem.length } else { 1.0 }
 }
 
 /// Readings with a constant that is so much in natural sizes.
-fn changed(problem: &TouchProblem, fault: SensorFault, by: f64) -> Option<Nodes> {
+fn changed(problem: &TouchProblem, fault: Constant, by: f64) -> Option<Nodes> {
     let mut nodes = problem.nodes.clone();
     match fault {
-        SensorFault::PalmTilt { palm, axis } => {
+        Constant::PalmTilt { palm, axis } => {
             for palms in &mut nodes.palms {
                 *palms = tilted(palms, palm - 1, axis, by)?;
             }
         }
-        SensorFault::ContactOffset { palm, axis } => {
+        Constant::ContactOffset { palm, axis } => {
             nodes.means.iter_mut().for_each(|means| means[palm - 1][axis] -= by * problem.length);
         }
         _ => return None,

@@ -3,7 +3,7 @@ use super::problem::{Guess, Row, TouchProblem, UNKNOWNS, uniform};
 use super::series::TouchSeries;
 use super::shape::FreeEllipsoid;
 use super::*;
-use crate::faults::SensorFault;
+use crate::faults::Constant;
 use crate::least_squares::FitStatus;
 use crate::rigid::{inertia_of_numbers, numbers_of_inertia};
 use crate::three_palms::motion_state::MotionState;
@@ -262,7 +262,7 @@ fn a_tilted_palm_is_named_and_counts() {
     let found = estimate_without_forces(&SensorLog::new(samples, None).unwrap(), &known).unwrap();
     let first =
         found.evidence.suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs())).unwrap();
-    assert_eq!(first.fault, SensorFault::PalmTilt { palm: 2, axis: 0 }, "{first}");
+    assert_eq!(first.fault, Constant::PalmTilt { palm: 2, axis: 0 }, "{first}");
     // The palm stands turned back from where it is said to be.
     assert!((first.value + TILT).abs() < 5.0 * first.deviation && first.score() < -4.75, "{first}");
     let off = |(motion, deviations): (&MotionState, &[DVec3; 4])| {
