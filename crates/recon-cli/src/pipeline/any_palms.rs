@@ -22,6 +22,7 @@ use recon::observer::rigid::nearest_turn;
 use recon::shape_bounds::ContactSample;
 use recon_io::{
     EstimateData, INERTIA_LEARNED, Implausibility, Level, MassDeviations, PalmContact, Scene, Sensors,
+    held_readings,
 };
 use std::error::Error;
 use std::path::Path;
@@ -148,6 +149,7 @@ pub(crate) fn estimate_any_palms(
     let truth = truth.zip(axes).map(|(truth, axes)| true_motion(&truth, axes));
     let mut warnings = request.warnings;
     warnings.extend(choice.iter().filter(|choice| !choice.is_reached).map(Choice::verdict));
+    warnings.extend(held_readings(&log).iter().map(|held| sentence(&held.to_string())));
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));

@@ -16,8 +16,8 @@ use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane
 use recon::observer::reliability::Reliability;
 use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
-    Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
-    explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
+    Evidence, Held, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
+    explanation, held_readings, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
 use std::error::Error;
@@ -34,7 +34,9 @@ pub(crate) struct PlanarMotion {
     known_body: bool,
     /// Bounds on the outline, where there are any.
     pub(super) bounds: Option<PlanarBounds>,
-    /// What is to be said of them.
+    /// Readings that are told more than once.
+    held: Vec<Held>,
+    /// What is to be said of the bounds.
     of_bounds: Vec<String>,
     /// Why it was modelled as it is, where an accuracy was wanted.
     pub(crate) choice: Option<Choice>,
@@ -49,13 +51,15 @@ pub(crate) fn planar_motion(
     covariances: bool,
 ) -> Result<PlanarMotion, CliError> {
     let noise = noise(&log, known)?;
+    let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
+    let held = held_readings(&log.in_space(&friction)?);
     let options = PlaneOptions {
         body: known.mass,
         size: known.size,
         suspects: true,
         mode_odds: true,
         pose_covariances: covariances,
-        ..PlaneOptions::new(noise, known.gravity, known.palms.iter().map(|(_, friction)| *friction).collect())
+        ..PlaneOptions::new(noise, known.gravity, friction)
     };
     let (log, estimate, known_body, choice) = match accuracy {
         None => {
@@ -70,7 +74,7 @@ pub(crate) fn planar_motion(
     };
     let noise = noise.times(estimate.evidence.rougher);
     let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
-    Ok(PlanarMotion { log, noise, estimate, known_body, bounds, of_bounds, choice })
+    Ok(PlanarMotion { log, noise, estimate, known_body, held, bounds, of_bounds, choice })
 }
 
 /// Bounds on the outline, and what is to be said of them.
@@ -170,7 +174,7 @@ impl PlanarMotion {
 
     /// What the reader must know.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut all = Vec::new();
+        let mut all: Vec<String> = self.held.iter().map(ToString::to_string).collect();
         if let Reliability::Unreliable(reasons) = &self.estimate.reliability {
             let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
             all.push(format!("not to be relied on: {}", reasons.join("; ")));

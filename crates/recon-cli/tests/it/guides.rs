@@ -120,6 +120,14 @@ fn what_is_understood_of_a_log_is_told() {
     scratch.write("long.csv", &long.text());
     let odd = scratch.run(&["check-input", "long.csv", "--scene", "scene.toml"]);
     assert!(odd.code == Some(4) && odd.stdout.contains("millimetres"), "{}", odd.stdout);
+    // Of a palm that measures its force in every second row.
+    let mut held = Table::parse(&scratch.read("log.csv"));
+    let force = held.column("f_2");
+    (1..held.rows.len()).step_by(2).for_each(|row| held.rows[row][force] = held.rows[row - 1][force].clone());
+    scratch.write("held.csv", &held.text());
+    let odd = scratch.run(&["check-input", "held.csv", "--scene", "scene.toml"]);
+    let named = odd.stdout.contains("the forces of palm 2 repeat") && odd.stdout.contains("over 2.0 rows");
+    assert!(odd.code == Some(4) && named && !odd.stdout.contains("palm 1 repeat"), "{}", odd.stdout);
 }
 
 #[test]

@@ -10,7 +10,8 @@ use recon::object_dynamics::{ContactLog, LoggedPalm, SensedAxes, TwistSource};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::plane_noise;
 use recon_io::{
-    AnyLog, PlanarKnown, Scene, Sensors, brief, brief_to, implausibilities, implausible_contacts,
+    AnyLog, PlanarKnown, Scene, Sensors, brief, brief_to, held_readings, implausibilities,
+    implausible_contacts,
 };
 use serde_json::{Value, json};
 
@@ -30,6 +31,7 @@ pub(super) fn told(loaded: LoadedLog, scene: &Scene) -> Result<Understood, CliEr
         AnyLog::Contacts(log) => (log.clone(), 2, ANY_PALMS, implausible_contacts(log, scene)),
     };
     let mut warnings: Vec<String> = odd.iter().map(ToString::to_string).collect();
+    warnings.extend(held_readings(&contacts).iter().map(ToString::to_string));
     warnings.extend(loaded.warnings.clone());
     let estimated_as = match sorted_with_forces(loaded, scene).log {
         LogOf::ThreePalms(_) => "three flat palms without friction".to_owned(),
@@ -55,17 +57,18 @@ pub(super) fn told_in_plane(log: &PlanarLog, known: PlanarKnown) -> Result<Under
     let (version, frames) = if known.palms.is_empty() { (1, HINGED) } else { (2, IN_PLANE) };
     let known = with_palms(known);
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
+    let contacts = log.in_space(&friction)?;
     let read = Read {
         kind: format!("planar sensor log, version {version}"),
         version,
         in_plane: true,
         frames,
         noise: plane_noise(log, &friction, 0.0)?,
-        contacts: log.in_space(&friction)?,
         sensors: known.sensors,
         mass: known.mass.map(|body| body.mass()),
         estimated_as: "contacts of palms in the plane".to_owned(),
-        warnings: Vec::new(),
+        warnings: held_readings(&contacts).iter().map(ToString::to_string).collect(),
+        contacts,
     };
     Ok(read.told())
 }
