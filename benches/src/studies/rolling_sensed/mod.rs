@@ -1,7 +1,7 @@
 //! Certified gap over palm motion with the estimator in the loop: planners, false certificates, horizon against bodies drawn, friction.
 //!
-//! Usage: `rolling_sensed [BODIES [RUNS [FIRST]]]`: bodies of the comparisons (30), runs that false certificates are counted over (1000) and the first
-//! seed of both; without bodies nothing is compared. Made in parts. Prints docs/rolling-sensed.md.
+//! Usage: `rolling_sensed [BODIES [RUNS [FIRST [PART]]]]`: bodies of the comparisons (30), runs that false certificates are counted over (1000), the first
+//! seed of both, and one of `planners`, `false`, `horizon` and `others` to be made alone. Prints docs/rolling-sensed.md.
 
 use exploration::rolling::{InformationRate, LargestGap, PalmSweep, RandomTurns, RollPlanner};
 use recon_benches::reaching::statistics::{interval, median_and_tail, quantile, ratio_of_medians};
@@ -84,15 +84,21 @@ pub(crate) fn main() -> Result<(), Failure> {
     let bodies: u64 = words.next().map_or(Ok(30), |a| a.parse())?;
     let runs: u64 = words.next().map_or(Ok(1000), |a| a.parse())?;
     let first: u64 = words.next().map_or(Ok(FIRST_SEED), |a| a.parse())?;
+    let part = words.next();
+    let asked = |name: &str| part.as_deref().is_none_or(|part| part == name);
     println!("{}\n", include_str!("intro.md").trim_end());
     println!("Made by `cargo xtask study rolling_sensed {bodies} {runs} {first}`.\n");
     let seeds = first..first + bodies;
-    if bodies > 0 {
+    if asked("planners") {
         compare(&seeds)?;
     }
-    false_certificates(first + 1000, runs)?;
-    if bodies > 0 {
+    if asked("false") {
+        false_certificates(first + 1000, runs)?;
+    }
+    if asked("horizon") {
         lookahead(&seeds)?;
+    }
+    if asked("others") {
         others(&seeds)?;
     }
     println!("{}", include_str!("outro.md").trim_end());

@@ -2,6 +2,7 @@
 //!
 //! Each motion goes with that at the next node and with the constants; those in between are summed over once, and not for each draw.
 
+use super::elimination::Eliminated;
 use super::flow::Transition;
 use super::solve::Covariances;
 use super::state::{MOTION, Tangent};
@@ -16,40 +17,64 @@ struct Kept<const P: usize> {
     own: Transition,
 }
 
-/// The nodes that are kept, from the last to the first.
-pub(super) struct Joint<const P: usize>(Vec<Kept<P>>);
+/// The nodes that are kept on either side of the root, from there outwards.
+pub(super) struct Joint<const P: usize> {
+    before: Vec<Kept<P>>,
+    after: Vec<Kept<P>>,
+    /// Whether the root is kept for both sides' sake alone.
+    root_is_between: bool,
+}
 
 impl<const P: usize> Covariances<P> {
     /// Of the motions at those nodes, in order.
     pub(super) fn joint(&self, nodes: &[usize]) -> Joint<P> {
-        let mut left = nodes.iter().rev().peekable();
-        let mut kept = Vec::with_capacity(nodes.len());
-        let none = (Transition::identity(), SMatrix::zeros(), Transition::zeros());
-        let (mut by_next, mut by_body, mut own) = none;
-        for (j, node) in self.chain.iter().enumerate().rev() {
-            let (here, next, body) = node.inverse();
-            own = here + next * own * next.transpose();
-            by_body = -body - next * by_body;
-            by_next = -next * by_next;
-            if left.next_if(|&&kept| kept == j).is_some() {
-                kept.push(Kept { by_next, by_body, own: root(&own) });
-                (by_next, by_body, own) = none;
-            }
+        let [before, after] = self.chain.from_root();
+        let asked = |j: usize| nodes.binary_search(&j).is_ok();
+        let root = before.first().filter(|_| !after.is_empty()).map(|(j, _)| *j);
+        Joint {
+            before: kept(&before, |j| asked(j) || root == Some(j)),
+            after: kept(&after, asked),
+            root_is_between: root.is_some_and(|j| !asked(j)),
         }
-        Joint(kept)
     }
+}
+
+/// Of these nodes, each with the one before it, those that are to be kept.
+fn kept<const P: usize>(
+    nodes: &[(usize, &Eliminated<P>)],
+    is_kept: impl Fn(usize) -> bool,
+) -> Vec<Kept<P>> {
+    let mut all = Vec::new();
+    let none = (Transition::identity(), SMatrix::zeros(), Transition::zeros());
+    let (mut by_next, mut by_body, mut own) = none;
+    for &(j, node) in nodes {
+        let (here, next, body) = node.inverse();
+        own = here + next * own * next.transpose();
+        by_body = -body - next * by_body;
+        by_next = -next * by_next;
+        if is_kept(j) {
+            all.push(Kept { by_next, by_body, own: root(&own) });
+            (by_next, by_body, own) = none;
+        }
+    }
+    all
 }
 
 impl<const P: usize> Joint<P> {
     /// One draw that goes with an error of the constants, in the order of the nodes.
     pub(super) fn draw(&self, body: &SVector<f64, P>, random: &mut Normal) -> Vec<Tangent> {
-        let mut errors = vec![Tangent::zeros(); self.0.len()];
-        let mut next = Tangent::zeros();
-        for (node, error) in self.0.iter().zip(errors.iter_mut().rev()) {
+        let mut drawn = |next: &mut Tangent, node: &Kept<P>| {
             let fresh: Tangent = normals(random);
-            next = node.by_next * next + node.by_body * body + node.own * fresh;
-            *error = next;
+            *next = node.by_next * *next + node.by_body * body + node.own * fresh;
+            Some(*next)
+        };
+        let mut errors: Vec<_> = self.before.iter().scan(Tangent::zeros(), &mut drawn).collect();
+        let root = errors.first().copied().unwrap_or_default();
+        if self.root_is_between {
+            errors.remove(0);
         }
+        errors.reverse();
+        errors.extend(self.after.iter().scan(root, &mut drawn));
         errors
     }
 }
@@ -78,7 +103,7 @@ mod tests {
         let body_gradient = SVector::zeros();
         let all = Equations { nodes, body, body_gradient, cost: 0.0, conditions: 0, links: Vec::new() };
         let covariances = all.covariances(&Tangent::zeros()).unwrap();
-        let Joint(kept) = covariances.joint(&[0, 3]);
+        let Joint { before: kept, .. } = covariances.joint(&[0, 3]);
         let own = |node: &Kept<2>| node.own * node.own.transpose();
         let (last, first) = (&kept[0], &kept[1]);
         let of_first = own(first) + first.by_next * own(last) * first.by_next.transpose();

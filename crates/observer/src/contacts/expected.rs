@@ -59,9 +59,9 @@ pub(super) fn held_as_expected(
 /// are none.
 fn told_by_noise(problem: &Problem, at: &Unknowns) -> Option<Vec<SVector<f64, CONSTANTS>>> {
     let here = solve::<CONSTANTS>(problem, at.clone(), 1, ENOUGH[1])?;
-    let (reduced, _) = here.equations.solver(&problem.natural_information())?;
+    let (chain, _) = here.equations.solver(&problem.natural_information())?;
     let mut all = Vec::new();
-    for claimed in Levers::new(problem, &here.unknowns).most_claimed(&here.unknowns, &reduced) {
+    for claimed in Levers::new(problem, &here.unknowns).most_claimed(&here.unknowns, &chain) {
         let body = &claimed.step.body;
         // Held, the constants are the likeliest beforehand along the step, whatever the others are.
         let combination = problem.body.1 * body;

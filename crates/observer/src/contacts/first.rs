@@ -72,12 +72,12 @@ impl First {
         let at = &solved.unknowns;
         let mut before = problem.linearised::<CONSTANTS>(at, 0..m)?;
         problem.add_prior(at, &mut before);
-        let (reduced, mended) = before.solver(&problem.natural_information())?;
-        let (own, by_body) = reduced.last().filter(|_| mended == 0.0)?;
+        let (chain, mended) = before.solver(&problem.natural_information())?;
+        let (own, with_body) = chain.last().filter(|_| mended == 0.0)?;
         // The most probable ones by what lies before alone.
-        let Step { motions, body: constants } = reduced.step(&before.gradient());
+        let Step { motions, body: constants } = chain.step(&before.gradient());
         let step = motions[m];
-        let of_body = reduced.of_body();
+        let of_body = &chain.body;
         let mut spurious = problem.first.spurious + claimed.spurious(&before, at);
         for combination in &problem.frozen {
             // It is known as it was: what equations claim of it counts no more than what noise makes of that.
@@ -92,7 +92,7 @@ impl First {
         let here = Self { p: motion.p + origin, v: motion.v, w, ..Self::of_axes(motion.q) };
         let (by_motion, slopes) = here.slopes(motion, &at.body, origin);
         let straight = by_motion.try_inverse()?;
-        let follows = slopes - by_motion * by_body;
+        let follows = slopes + by_motion * with_body;
         let first = Self {
             beside: by_motion * step + slopes * constants - follows * constants,
             information: symmetric(straight.transpose() * own.cholesky()?.inverse() * straight),

@@ -6,11 +6,12 @@
 //! counts against `C`: of the spin of a body of revolution about its axis conditions tell nothing, and noise alone would tell it by chance.
 
 use super::body::{CONSTANTS, INERTIA};
+use super::chain::Chain;
 use super::equations::Gradient;
 use super::problem::{Problem, Unknowns};
 use super::record::Contact;
 use super::rows::Rows;
-use super::solve::{Reduced, Solved, Step};
+use super::solve::{Solved, Step};
 use super::state::{MOTION, Tangent};
 use glam::DVec3;
 use nalgebra::{Matrix3, SMatrix, SVector, SymmetricEigen, Vector3};
@@ -79,7 +80,7 @@ impl Levers {
     }
 
     /// Directions of which noise adds most to the information, independent of each other.
-    pub(super) fn most_claimed(&self, at: &Unknowns, reduced: &Reduced<CONSTANTS>) -> Vec<Claimed> {
+    pub(super) fn most_claimed(&self, at: &Unknowns, chain: &Chain<CONSTANTS>) -> Vec<Claimed> {
         let start = |i: usize| -> Vec<Spin> {
             let axis = DVec3::AXES[i % 3];
             at.motions.iter().map(|motion| Spin::from(if i < 3 { axis } else { motion.q * axis })).collect()
@@ -88,7 +89,7 @@ impl Levers {
         let mut steps = Vec::new();
         for _ in 0..ROUNDS {
             if !turned.is_empty() {
-                steps = self.more_claimed(reduced, &turned);
+                steps = self.more_claimed(chain, &turned);
             }
             turned = steps.iter().map(|step| self.turned(step)).collect();
         }
@@ -100,9 +101,9 @@ impl Levers {
     }
 
     /// Steps of unit information, independent of each other, in the space of those that the equations make of what noise adds to these changes.
-    fn more_claimed(&self, reduced: &Reduced<CONSTANTS>, turned: &[Vec<Spin>]) -> Vec<Step<CONSTANTS>> {
+    fn more_claimed(&self, chain: &Chain<CONSTANTS>, turned: &[Vec<Spin>]) -> Vec<Step<CONSTANTS>> {
         let pulls: Vec<_> = turned.iter().map(|turned| self.against(turned)).collect();
-        let steps: Vec<_> = pulls.iter().map(|pull| reduced.step(pull)).collect();
+        let steps: Vec<_> = pulls.iter().map(|pull| chain.step(pull)).collect();
         let count = steps.len();
         // A step is the inverse of the information times its pull.
         let shared = |i: usize, k: usize| -0.5 * (pulls[i].dot(&steps[k]) + pulls[k].dot(&steps[i]));
@@ -162,15 +163,15 @@ pub(super) fn spins(at: &Unknowns) -> Vec<Spin> {
 /// one of what is taken for noise of conditions and may be none, so that levers are taken for better than they are.
 pub(super) fn errors_of_levers(problem: &Problem, solved: &Solved<CONSTANTS>) -> Vec<Step<CONSTANTS>> {
     let at = &solved.unknowns;
-    let Some((reduced, _)) = solved.equations.solver(&problem.natural_information()) else {
+    let Some((chain, _)) = solved.equations.solver(&problem.natural_information()) else {
         return Vec::new();
     };
     let levers = Levers::new(problem, at);
-    let claimed = levers.most_claimed(at, &reduced);
+    let claimed = levers.most_claimed(at, &chain);
     let wider =
         |Claimed { step, left }: &Claimed| step.scaled((left.clamp(LEAST, 1.0).powi(-2) - 1.0).sqrt());
     let mut errors: Vec<_> = claimed.iter().map(wider).collect();
-    errors.push(reduced.step(&levers.against(&spins(at))));
+    errors.push(chain.step(&levers.against(&spins(at))));
     errors
 }
 

@@ -33,6 +33,7 @@ mod beginning;
 mod between;
 mod body;
 mod both;
+mod chain;
 mod changed;
 mod cold;
 mod directly;

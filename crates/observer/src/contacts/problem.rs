@@ -1,6 +1,7 @@
 //! Least squares over all nodes: links, contact conditions and what is known beforehand, linearised.
 
 use super::body::{Body, CONSTANTS};
+use super::chain::SHARED;
 use super::equations::{Equations, LinkEquation, Room, Row, Split};
 use super::feet::{Foot, Share, Told, at_end};
 use super::first::First;
@@ -28,9 +29,6 @@ pub(super) const FROZEN: f64 = 1e4;
 
 /// Natural times over which steps integrate the motion anew: a minute of a body of 0.1 m (700) settles with 1 to 20 of them, and not with all.
 const STRETCH: f64 = 20.0;
-
-/// Nodes from which on two threads linearise. Of whole logs alone: the windows of a stream are fewer, and leave the other cores to the robot.
-const SHARED: usize = 500;
 
 /// Natural units of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -237,23 +235,52 @@ impl Problem<'_> {
         if is_stopped() {
             return None;
         }
-        let Step { motions: steps, body } = step;
-        let numbers = Vector6::from_fn(|i, _| if P > i + 1 { body[i + 1] } else { 0.0 });
-        let after = if P > 0 { at.body.moved(body[0], &numbers) } else { at.body };
+        let numbers = Vector6::from_fn(|i, _| if P > i + 1 { step.body[i + 1] } else { 0.0 });
+        let after = if P > 0 { at.body.moved(step.body[0], &numbers) } else { at.body };
         let change = (P > 0).then_some(&numbers);
-        let mut motions: Vec<Motion> = Vec::with_capacity(at.motions.len());
-        let mut departures = Vec::with_capacity(equations.links.len());
+        let count = at.motions.len();
+        let some = |nodes| self.trial_of_some(at, step, (change, &after), &equations.links, nodes);
+        // Where a stretch begins nothing is carried on, but of a flight.
+        let apart = |&j: &usize| self.begins_stretch(j) && !self.record.contacts[self.nodes[j]].is_empty();
+        let middle = (count / 2..count).find(apart).filter(|_| count >= SHARED);
+        let (motions, departures, mut cost) = match middle {
+            None => some(0..count)?,
+            Some(middle) => {
+                let (first, rest) = at_once(|| some(0..middle), || some(middle..count));
+                let ((mut motions, mut departures, cost), rest) = (first?, rest?);
+                motions.extend(rest.0);
+                departures.extend(rest.1);
+                (motions, departures, cost + rest.2)
+            }
+        };
+        let unknowns = Unknowns { motions, body: after };
+        cost += self.prior_cost::<P>(&unknowns);
+        cost.is_finite().then_some(Trial { unknowns, cost, departures })
+    }
+
+    /// Of some nodes, from one on at which nothing is carried on: the motions, what the residual of each link is beyond its linear prediction, and the cost.
+    fn trial_of_some<const P: usize>(
+        &self,
+        at: &Unknowns,
+        Step { motions: steps, body }: &Step<P>,
+        (change, after): (Option<&Vector6<f64>>, &Body),
+        links: &[LinkEquation<P>],
+        nodes: Range<usize>,
+    ) -> Option<(Vec<Motion>, Vec<Tangent>, f64)> {
+        let mut motions: Vec<Motion> = Vec::with_capacity(nodes.len());
+        let mut departures = Vec::with_capacity(nodes.len());
         let mut cost = 0.0;
         // Node `j` after its step, which leads to `p` and `q` and beyond them `by`.
         let place = |j: usize, p: DVec3, q: DQuat, by: &Tangent| {
             let [shift, _, _, turn] = parts(by);
             let to = (p + shift, (exponential(turn) * q).normalize());
-            at.motions[j].moved(&steps[j], to, &at.body, change, &after)
+            at.motions[j].moved(&steps[j], to, &at.body, change, after)
         };
-        let mut moved = place(0, at.motions[0].p, at.motions[0].q, &steps[0]);
-        for j in 0..at.motions.len() {
+        let first = nodes.start;
+        let mut moved = place(first, at.motions[first].p, at.motions[first].q, &steps[first]);
+        for j in nodes {
             motions.push(moved);
-            let mut carried = Carried::<P>::new(moved, &after);
+            let mut carried = Carried::<P>::new(moved, after);
             let end = self.nodes.get(j + 1).copied().unwrap_or(self.nodes[j] + 1);
             let split = end == self.nodes[j] + 1 && j + 1 < at.motions.len();
             let (mut noise, mut told) = (WrenchNoise::default(), Told::default());
@@ -263,11 +290,11 @@ impl Problem<'_> {
                     cost += self.rows_cost(k, (&carried.motion, &carried.turn), nothing, &mut told);
                 }
                 if j + 1 < at.motions.len() {
-                    self.step(&mut carried, k, &after);
+                    self.step(&mut carried, k, after);
                     noise += self.record.intervals[k].noise;
                 }
             }
-            let Some(link) = equations.links.get(j) else { break };
+            let Some(link) = links.get(j) else { break };
             let left = link.residual + steps[j + 1] - link.carried.along(&steps[j], body);
             let mut next = match at.motions[j + 1] {
                 Motion { p, q, .. } if self.begins_stretch(j + 1) => place(j + 1, p, q, &steps[j + 1]),
@@ -285,16 +312,14 @@ impl Problem<'_> {
                 let motion = moved.kicked(&r, self.share(j));
                 let turn = after.turn(motion.q, motion.L);
                 cost += self.rows_cost(self.nodes[j], (&motion, &turn), |contact| contact.J_after, &mut told);
-                self.feet_after::<0>(end, &next, &after, |row, by| told.add(&by, row.value));
+                self.feet_after::<0>(end, &next, after, |row, by| told.add(&by, row.value));
             }
             let left = r - told.at_end(carried.after, &carried.turn);
             let noise = self.link_noise(&noise, (carried.motion.p, carried.after), &told)?;
-            cost += noise.cost(&left, &after, &carried.turn);
+            cost += noise.cost(&left, after, &carried.turn);
             moved = next;
         }
-        let unknowns = Unknowns { motions, body: after };
-        cost += self.prior_cost::<P>(&unknowns);
-        cost.is_finite().then_some(Trial { unknowns, cost, departures })
+        Some((motions, departures, cost))
     }
 
     /// Whether a node is the first of a stretch of the log.

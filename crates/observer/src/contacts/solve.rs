@@ -1,11 +1,10 @@
 //! Levenberg-Marquardt steps on a chain of nodes and the constants that all of them share.
 
-use super::elimination::Eliminated;
-use super::equations::{Equations, Gradient, Room};
+use super::chain::{Chain, Known};
+use super::equations::{Equations, Room};
 use super::flow::Transition;
 use super::problem::{Problem, Trial, Unknowns};
 use super::state::{MOTION, Tangent};
-use super::triangular::{factor, inverse};
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use crate::reliability::LARGEST_MISFIT;
 use nalgebra::{SMatrix, SVector};
@@ -62,20 +61,13 @@ impl<const P: usize> Step<P> {
     }
 }
 
-/// The chain with the nodes eliminated, first to last, and what is left for the constants.
-pub(super) struct Reduced<const P: usize> {
-    nodes: Vec<Eliminated<P>>,
-    body: SMatrix<f64, P, P>,
-}
-
 /// Covariances of the unknowns.
 pub(super) struct Covariances<const P: usize> {
-    /// Of each motion for given constants, and how it follows the constants.
-    pub(super) motions: Vec<(Transition, SMatrix<f64, MOTION, P>)>,
+    pub(super) motions: Vec<Known<P>>,
     /// Of each motion with the next one, for given constants.
     pub(super) next: Vec<Transition>,
     pub(super) body: SMatrix<f64, P, P>,
-    pub(super) chain: Vec<Eliminated<P>>,
+    pub(super) chain: Chain<P>,
     /// Information that was added against rounding, as a share of that of natural units at each node.
     pub(super) mended: f64,
     /// By how much solutions spread farther than a linear model says at each node, where it was looked at.
@@ -84,78 +76,7 @@ pub(super) struct Covariances<const P: usize> {
     pub(super) errors: Vec<Step<P>>,
 }
 
-impl<const P: usize> Reduced<P> {
-    /// Covariance of the constants.
-    pub(super) fn of_body(&self) -> &SMatrix<f64, P, P> {
-        &self.body
-    }
-
-    /// Covariance of the last motion for given constants, and by what it falls with them.
-    pub(super) fn last(&self) -> Option<(Transition, SMatrix<f64, MOTION, P>)> {
-        let (own, _, by_body) = self.nodes.last()?.inverse();
-        Some((own, by_body))
-    }
-
-    /// The step that takes a gradient to zero.
-    pub(super) fn step(&self, gradient: &Gradient<P>) -> Step<P> {
-        let mut left = Vec::with_capacity(self.nodes.len());
-        let (mut of_body, mut carried) = (gradient.body, Tangent::zeros());
-        for (node, own) in self.nodes.iter().zip(&gradient.motions) {
-            let (mut own, mut next) = (own + carried, Tangent::zeros());
-            node.down(&mut own, &mut next, &mut of_body);
-            carried = next;
-            left.push(-own);
-        }
-        let body = -(self.body * of_body);
-        let mut after = Tangent::zeros();
-        for (node, left) in self.nodes.iter().zip(&mut left).rev() {
-            after = node.up(left, &after, &body);
-            *left = after;
-        }
-        Step { motions: left, body }
-    }
-}
-
 impl<const P: usize> Equations<P> {
-    /// Eliminates the nodes, first to last, each of which is given to `each`. Gives the covariance of the constants; none where the equations are not
-    /// positive definite.
-    fn eliminated(
-        &self,
-        damping: &Tangent,
-        body_damping: f64,
-        mut each: impl FnMut(&Eliminated<P>),
-    ) -> Option<SMatrix<f64, P, P>> {
-        let mut before: Option<Eliminated<P>> = None;
-        let mut body = self.body + SMatrix::identity() * body_damping;
-        for node in &self.nodes {
-            let (mut own, mut to_body) = (node.own, node.body);
-            for i in 0..MOTION {
-                own[(i, i)] += damping[i];
-            }
-            if let Some(before) = &before {
-                before.lessen(&mut own, &mut to_body, &mut body);
-            }
-            each(before.insert(Eliminated::new(&own, &node.next, &to_body)?));
-        }
-        if let Some(last) = &before {
-            last.lessen(&mut Transition::zeros(), &mut SMatrix::zeros(), &mut body);
-        }
-        Some(inverse(&factor(&body)?))
-    }
-
-    /// The same with the nodes, in memory that is there.
-    fn reduced_in(
-        &self,
-        damping: &Tangent,
-        body_damping: f64,
-        mut nodes: Vec<Eliminated<P>>,
-    ) -> Option<Reduced<P>> {
-        nodes.clear();
-        nodes.reserve(self.nodes.len());
-        let body = self.eliminated(damping, body_damping, |node| nodes.push(*node))?;
-        Some(Reduced { nodes, body })
-    }
-
     /// Fall of the cost that the linear model promises of a step which solves the damped equations, the damping counted as
     /// a cost.
     fn promised(&self, step: &Step<P>) -> f64 {
@@ -178,27 +99,12 @@ impl<const P: usize> Equations<P> {
         self.left() < SETTLED.max(enough) * self.scale()
     }
 
-    /// Fall of the cost that an undamped step promises.
-    fn left(&self) -> f64 {
-        let (mut nodes, mut of_body, mut carried) = (self.nodes.iter(), self.body_gradient, Tangent::zeros());
-        let mut promised = 0.0;
-        let body = self.eliminated(&Tangent::zeros(), 0.0, |node| {
-            let Some(own) = nodes.next() else { return };
-            let (mut own, mut next) = (own.gradient + carried, Tangent::zeros());
-            node.down(&mut own, &mut next, &mut of_body);
-            // The gradient's square by the inverse of the equations, as far as it comes from this node.
-            promised += own.norm_squared();
-            carried = next;
-        });
-        body.map_or(f64::INFINITY, |body| promised + (body * of_body).dot(&of_body))
-    }
-
     /// The equations with all nodes eliminated, and the share of information that was added to them. `unit` is the information of a node whose deviations are the natural units.
     ///
     /// Where rounding leaves the equations indefinite, as little of it is added as mends them: a deviation then is no larger than a
     /// natural unit over the root of that share of all nodes. None where a hundred of it are not enough.
-    pub(super) fn solver(&self, unit: &Tangent) -> Option<(Reduced<P>, f64)> {
-        let with = |share: f64| Some((self.reduced_in(&(unit * share), 0.0, Vec::new())?, share));
+    pub(super) fn solver(&self, unit: &Tangent) -> Option<(Chain<P>, f64)> {
+        let with = |share: f64| Some((self.chain((&(unit * share), 0.0), Chain::default())?, share));
         [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0].into_iter().find_map(with)
     }
 
@@ -209,30 +115,10 @@ impl<const P: usize> Equations<P> {
 
     /// As [`Self::solver`].
     pub(super) fn covariances(&self, unit: &Tangent) -> Option<Covariances<P>> {
-        let (reduced, mended) = self.solver(unit)?;
-        let mut motions = Vec::with_capacity(self.nodes.len());
-        let mut next = Vec::with_capacity(self.nodes.len());
-        let (mut after, mut follows) = (Transition::zeros(), SMatrix::<f64, MOTION, P>::zeros());
-        for node in reduced.nodes.iter().rev() {
-            let (own, by_next, by_body) = node.inverse();
-            let with_next = by_next * after;
-            next.push(-with_next);
-            after = own + with_next * by_next.transpose();
-            follows = -by_body - by_next * follows;
-            motions.push((after, follows));
-        }
-        motions.reverse();
-        next.reverse();
-        next.pop();
-        Some(Covariances {
-            motions,
-            next,
-            body: reduced.body,
-            chain: reduced.nodes,
-            mended,
-            beyond: Vec::new(),
-            errors: Vec::new(),
-        })
+        let (chain, mended) = self.solver(unit)?;
+        let (motions, next) = chain.covariances();
+        let (beyond, errors) = (Vec::new(), Vec::new());
+        Some(Covariances { motions, next, body: chain.body, chain, mended, beyond, errors })
     }
 }
 
@@ -248,7 +134,7 @@ impl<const P: usize> Covariances<P> {
     }
 
     /// Of the numbers of one of the motions.
-    pub(super) fn deviations(&self, (own, follows): &(Transition, SMatrix<f64, MOTION, P>)) -> Tangent {
+    pub(super) fn deviations(&self, (own, follows): &Known<P>) -> Tangent {
         (own + follows * self.body * follows.transpose())
             .diagonal()
             .map(|variance| variance.max(f64::MIN_POSITIVE).sqrt())
@@ -264,7 +150,7 @@ pub(super) fn solve<const P: usize>(
     enough: f64,
 ) -> Option<Solved<P>> {
     let mut unknowns = start;
-    let (mut room, mut spare) = (Room::<P>::default(), Vec::new());
+    let (mut room, mut spare) = (Room::<P>::default(), Chain::default());
     let mut equations = problem.linearise_in(&unknowns, &mut room)?;
     let unit = problem.natural_information();
     let mean =
@@ -282,13 +168,13 @@ pub(super) fn solve<const P: usize>(
             }
             checked = (iterations, equations.cost);
         }
-        let reduced =
-            equations.reduced_in(&(unit * (damping * mean)), damping * mean, std::mem::take(&mut spare));
-        let step = reduced.as_ref().map(|reduced| reduced.step(&equations.gradient()));
+        let damped = (&(unit * (damping * mean)), damping * mean);
+        let chain = equations.chain(damped, std::mem::take(&mut spare));
+        let step = chain.as_ref().map(|chain| chain.step(&equations.gradient()));
         let promised = step.as_ref().map_or(f64::INFINITY, |step| equations.promised(step));
-        let both = reduced.as_ref().zip(step.as_ref());
-        let trial = both.and_then(|(reduced, step)| tried(problem, &unknowns, &equations, reduced, step));
-        spare = reduced.map(|reduced| reduced.nodes).unwrap_or_default();
+        let both = chain.as_ref().zip(step.as_ref());
+        let trial = both.and_then(|(chain, step)| tried(problem, &unknowns, &equations, chain, step));
+        spare = chain.unwrap_or_default();
         let short = step.as_ref().is_some_and(|step| length(step, &unit) < NO_STEP);
         // A heavily damped step promises little anywhere: what counts is what all of the step would gain.
         let little = promised < enough * equations.scale() || short;
@@ -321,14 +207,14 @@ fn tried<const P: usize>(
     problem: &Problem,
     at: &Unknowns,
     equations: &Equations<P>,
-    reduced: &Reduced<P>,
+    chain: &Chain<P>,
     step: &Step<P>,
 ) -> Option<Trial> {
     let first = problem.trial(at, step, equations)?;
     if equations.cost - first.cost > BENT * equations.promised(step) {
         return Some(first);
     }
-    let back = reduced.step(&equations.gradient_of(&first.departures));
+    let back = chain.step(&equations.gradient_of(&first.departures));
     let motions = step.motions.iter().zip(&back.motions).map(|(step, back)| step + back).collect();
     let second = problem.trial(at, &Step { motions, body: step.body + back.body }, equations);
     Some(second.filter(|second| second.cost < first.cost).unwrap_or(first))

@@ -4,10 +4,11 @@
 //! pull elsewhere: the cost changes with that as with a constant of the sensors, with motion and axes following it.
 
 use super::body::CONSTANTS;
+use super::chain::Chain;
 use super::equations::Gradient;
 use super::levers::Levers;
 use super::problem::Problem;
-use super::solve::{Covariances, Reduced, Solved, Step};
+use super::solve::{Covariances, Solved, Step};
 use super::state::Tangent;
 use super::suspects::Score;
 use crate::faults::Constant;
@@ -50,7 +51,7 @@ impl<'a> StatedBody<'a> {
     pub(super) fn score(
         &self,
         constant: Constant,
-        solver: &Reduced<CONSTANTS>,
+        solver: &Chain<CONSTANTS>,
         followed: &Step<CONSTANTS>,
     ) -> Option<Score> {
         let Self { problem, solved, spurious, levers } = self;

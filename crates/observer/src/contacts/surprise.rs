@@ -5,7 +5,6 @@
 //! belong to the probability (Laplace's approximation).
 
 use super::body::CONSTANTS;
-use super::elimination::Eliminated;
 use super::problem::Problem;
 use super::solve::{Covariances, Solved};
 use super::state::Motion;
@@ -46,7 +45,7 @@ fn of_all_near(problem: &Problem, free: &Solved<CONSTANTS>) -> Option<f64> {
 impl Covariances<CONSTANTS> {
     /// Logarithm of the determinant of the information of all unknowns.
     fn log_information(&self) -> Option<f64> {
-        Some(self.chain.iter().map(Eliminated::log_det).sum::<f64>() - log_det(self.body)?)
+        Some(self.chain.log_det() - log_det(self.body)?)
     }
 }
 

@@ -6,6 +6,7 @@
 
 use super::body::{Body, CONSTANTS};
 use super::both::both;
+use super::chain::Chain;
 use super::changed::Averages;
 use super::equations::Equations;
 use super::noise::{ContactNoiseLevel, force_trace};
@@ -16,7 +17,7 @@ use super::samples::Deviations;
 use super::sensor_change::{
     Change, slopes_of_contact_noise, slopes_of_contacts, slopes_of_forces, slopes_of_noise,
 };
-use super::solve::{Covariances, Reduced, Solved, Step};
+use super::solve::{Covariances, Solved, Step};
 use super::state::{Motion, Tangent};
 use super::stated_body::{CONSTANTS_OF_BODY, StatedBody};
 use super::verdict::ContactEvidence;
@@ -116,7 +117,7 @@ pub(super) struct Scores<'a> {
     problem: &'a Problem<'a>,
     solved: &'a Solved<CONSTANTS>,
     equations: Cow<'a, Equations<CONSTANTS>>,
-    solver: Reduced<CONSTANTS>,
+    solver: Chain<CONSTANTS>,
     followed: Step<CONSTANTS>,
     conditions: Conditions,
     residuals: Residuals,

@@ -213,8 +213,8 @@ fn the_gradient_is_that_of_the_cost() {
         for i in 0..CONSTANTS {
             off.body[i] -= slope(equations.body[(i, i)], &|step, h| step.body[i] = h);
         }
-        let (reduced, mended) = equations.solver(&problem.natural_information()).unwrap();
-        let step = reduced.step(&off);
+        let (chain, mended) = equations.solver(&problem.natural_information()).unwrap();
+        let step = chain.step(&off);
         let nodes: f64 = step.motions.iter().zip(&off.motions).map(|(s, g)| s.dot(g)).sum();
         let deviations = (-(nodes + step.body.dot(&off.body))).sqrt();
         assert_eq!(mended, 0.0, "{what}");

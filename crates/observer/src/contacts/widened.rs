@@ -64,7 +64,7 @@ fn divided<const P: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::elimination::Eliminated;
+    use super::super::chain::Chain;
     use super::super::state::Tangent;
     use super::*;
     use crate::random::Normal;
@@ -100,7 +100,7 @@ mod tests {
                 motions: vec![(own, follows)],
                 next: Vec::new(),
                 body,
-                chain: Vec::<Eliminated<3>>::new(),
+                chain: Chain::default(),
                 mended: 0.0,
                 beyond: Vec::new(),
                 errors: Vec::new(),

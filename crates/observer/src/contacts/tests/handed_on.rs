@@ -42,11 +42,11 @@ fn what_is_handed_on_stands_for_all_before() {
                     Unknowns { motions: solved.unknowns.motions[m..].to_vec(), body: solved.unknowns.body };
                 let equations = rest.linearise::<CONSTANTS>(&at).unwrap();
                 let unit = problem.natural_information();
-                let (reduced, mended) = equations.solver(&unit).unwrap();
+                let (chain, mended) = equations.solver(&unit).unwrap();
                 assert_eq!(mended, 0.0);
                 // In deviations squared: of second order in how far apart what lies before and all of it are.
                 let gradient = equations.gradient();
-                let left = -gradient.dot(&reduced.step(&gradient));
+                let left = -gradient.dot(&chain.step(&gradient));
                 assert!(left < 1e-2, "{known} {m}: {left} deviations squared beside");
                 let [whole, rest] = [&solved.equations, &equations].map(|of| of.covariances(&unit).unwrap());
                 let (whole_last, rest_last) = (whole.of_motion(last), rest.of_motion(last - m));
