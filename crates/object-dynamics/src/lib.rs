@@ -53,8 +53,8 @@ mod three_palms;
 pub use contact_log::{ChannelNoise, ContactNoise};
 pub use contact_log::{
     ContactLog, ContactLogError, ContactPoints, ForceChannel, LoggedPalm, MeasuredMotion, NotThreePlanes,
-    PalmHinge, PalmRecord, RecordedMotion, SensedAxes, SensedForce, ThreePlanes, Touch, TrueContact,
-    TwistSource,
+    PalmHinge, PalmRecord, RecordedMotion, SensedAxes, SensedForce, Stuck, StuckReading, StuckWatch,
+    ThreePlanes, Touch, TrueContact, TwistSource,
 };
 pub use contacts::{
     ContactScene, ContactSceneError, DriveError, MOST_PALMS, ModeError, PalmContactError, PalmCoordinates,

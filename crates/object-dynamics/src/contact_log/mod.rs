@@ -9,6 +9,7 @@ mod palm;
 mod picked;
 mod record;
 mod simulated;
+mod stuck;
 mod three_planes;
 mod twice;
 mod twists;
@@ -25,6 +26,7 @@ pub use record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, SensedAxes, TrueContact,
     TwistSource,
 };
+pub use stuck::{Stuck, StuckReading, StuckWatch};
 pub use three_planes::{NotThreePlanes, ThreePlanes};
 
 use crate::TrueState;

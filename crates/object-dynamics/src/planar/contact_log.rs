@@ -139,6 +139,15 @@ impl ContactLog {
         &self.samples
     }
 
+    /// The log with those of its samples, by their numbers in rising order. Impulses are integrals, so that they lose nothing between samples.
+    ///
+    /// # Errors
+    /// Those of a log that is left with less than two samples, or with samples out of order.
+    pub fn picked(&self, samples: &[usize]) -> Result<Self, ContactLogError> {
+        let truth = self.truth.as_ref().map(|truth| some(truth, samples));
+        Self::new(self.surfaces.clone(), some(&self.samples, samples), truth)
+    }
+
     /// For noise, which keeps what [`Self::new`] has checked: finite numbers and times.
     #[cfg(feature = "noise")]
     pub(super) fn samples_mut(&mut self) -> &mut [ContactLogSample] {
@@ -150,6 +159,10 @@ impl ContactLog {
     pub fn truth(&self) -> Option<&[PlanarTruth]> {
         self.truth.as_deref()
     }
+}
+
+fn some<T: Clone>(all: &[T], samples: &[usize]) -> Vec<T> {
+    samples.iter().filter_map(|&k| all.get(k)).cloned().collect()
 }
 
 impl ContactSimulation {

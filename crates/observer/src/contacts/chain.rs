@@ -237,8 +237,7 @@ impl<const P: usize> Chain<P> {
     pub(super) fn covariances(&self) -> (Vec<Known<P>>, Vec<Transition>) {
         let Some((root, first)) = self.first.split_last() else { return (Vec::new(), Vec::new()) };
         let last = known(root);
-        let (first, rest) =
-            sides(self.is_split(), || outwards(first, last), || outwards(&self.rest, last));
+        let (first, rest) = sides(self.is_split(), || outwards(first, last), || outwards(&self.rest, last));
         let (mut motions, mut next) = first;
         motions.reverse();
         next.reverse();
@@ -258,7 +257,10 @@ impl<const P: usize> Chain<P> {
     pub(super) fn from_root(&self) -> [Vec<(usize, &Eliminated<P>)>; 2] {
         let count = self.first.len();
         let after = |(i, node)| (count + i, node);
-        [self.first.iter().enumerate().rev().collect(), self.rest.iter().rev().enumerate().map(after).collect()]
+        [
+            self.first.iter().enumerate().rev().collect(),
+            self.rest.iter().rev().enumerate().map(after).collect(),
+        ]
     }
 }
 
@@ -309,13 +311,17 @@ mod tests {
     }
 
     /// The equations as one matrix, the constants last.
-    fn dense(of: &Equations<CONSTANTS>, damping: &Tangent) -> (nalgebra::DMatrix<f64>, nalgebra::DVector<f64>) {
+    fn dense(
+        of: &Equations<CONSTANTS>,
+        damping: &Tangent,
+    ) -> (nalgebra::DMatrix<f64>, nalgebra::DVector<f64>) {
         let constants = MOTION * NODES;
         let mut all = nalgebra::DMatrix::zeros(constants + CONSTANTS, constants + CONSTANTS);
         let mut gradient = nalgebra::DVector::zeros(constants + CONSTANTS);
         for (j, node) in of.nodes.iter().enumerate() {
             let at = MOTION * j;
-            all.view_mut((at, at), (MOTION, MOTION)).copy_from(&(node.own + Transition::from_diagonal(damping)));
+            all.view_mut((at, at), (MOTION, MOTION))
+                .copy_from(&(node.own + Transition::from_diagonal(damping)));
             if j + 1 < NODES {
                 all.view_mut((at, at + MOTION), (MOTION, MOTION)).copy_from(&node.next);
                 all.view_mut((at + MOTION, at), (MOTION, MOTION)).copy_from(&node.next.transpose());

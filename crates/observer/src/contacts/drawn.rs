@@ -40,10 +40,7 @@ impl<const P: usize> Covariances<P> {
 }
 
 /// Of these nodes, each with the one before it, those that are to be kept.
-fn kept<const P: usize>(
-    nodes: &[(usize, &Eliminated<P>)],
-    is_kept: impl Fn(usize) -> bool,
-) -> Vec<Kept<P>> {
+fn kept<const P: usize>(nodes: &[(usize, &Eliminated<P>)], is_kept: impl Fn(usize) -> bool) -> Vec<Kept<P>> {
     let mut all = Vec::new();
     let none = (Transition::identity(), SMatrix::zeros(), Transition::zeros());
     let (mut by_next, mut by_body, mut own) = none;

@@ -36,6 +36,7 @@ mod sensor_words;
 mod simulate;
 mod smooth;
 mod sound;
+mod stuck;
 mod truth;
 mod views;
 mod without_forces;
@@ -70,6 +71,7 @@ pub(crate) use read::{
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use smooth::smooth_surface;
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
+pub(crate) use stuck::stuck_readings;
 pub(crate) use views::views;
 pub(crate) use without_forces::{WithoutForces, without_forces};
 pub(crate) use without_forces_page::without_forces_page;

@@ -8,6 +8,7 @@ use super::least_model::{choice_figures, choice_rows};
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
 use super::plane::PlanarBounds;
+use super::stuck::plane_without_stuck;
 use crate::error::CliError;
 use recon::least_model::{Accuracy, Choice, least_plane_estimate, one_of_plane};
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
@@ -16,7 +17,7 @@ use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane
 use recon::observer::reliability::Reliability;
 use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
-    Evidence, Held, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
+    Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
     explanation, held_readings, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
@@ -34,8 +35,8 @@ pub(crate) struct PlanarMotion {
     known_body: bool,
     /// Bounds on the outline, where there are any.
     pub(super) bounds: Option<PlanarBounds>,
-    /// Readings that are told more than once.
-    held: Vec<Held>,
+    /// What is to be said of readings that repeat.
+    of_readings: Vec<String>,
     /// What is to be said of the bounds.
     of_bounds: Vec<String>,
     /// Why it was modelled as it is, where an accuracy was wanted.
@@ -50,9 +51,10 @@ pub(crate) fn planar_motion(
     accuracy: Option<Accuracy>,
     covariances: bool,
 ) -> Result<PlanarMotion, CliError> {
-    let noise = noise(&log, known)?;
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
-    let held = held_readings(&log.in_space(&friction)?);
+    let (log, mut of_readings) = plane_without_stuck(log, &friction)?;
+    let noise = noise(&log, known)?;
+    of_readings.extend(held_readings(&log.in_space(&friction)?).iter().map(ToString::to_string));
     let options = PlaneOptions {
         body: known.mass,
         size: known.size,
@@ -74,7 +76,7 @@ pub(crate) fn planar_motion(
     };
     let noise = noise.times(estimate.evidence.rougher);
     let (bounds, of_bounds) = bounded(&log, &estimate, noise.contact);
-    Ok(PlanarMotion { log, noise, estimate, known_body, held, bounds, of_bounds, choice })
+    Ok(PlanarMotion { log, noise, estimate, known_body, of_readings, bounds, of_bounds, choice })
 }
 
 /// Bounds on the outline, and what is to be said of them.
@@ -174,7 +176,7 @@ impl PlanarMotion {
 
     /// What the reader must know.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        let mut all: Vec<String> = self.held.iter().map(ToString::to_string).collect();
+        let mut all = self.of_readings.clone();
         if let Reliability::Unreliable(reasons) = &self.estimate.reliability {
             let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
             all.push(format!("not to be relied on: {}", reasons.join("; ")));

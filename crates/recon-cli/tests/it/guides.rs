@@ -128,6 +128,17 @@ fn what_is_understood_of_a_log_is_told() {
     let odd = scratch.run(&["check-input", "held.csv", "--scene", "scene.toml"]);
     let named = odd.stdout.contains("the forces of palm 2 repeat") && odd.stdout.contains("over 2.0 rows");
     assert!(odd.code == Some(4) && named && !odd.stdout.contains("palm 1 repeat"), "{}", odd.stdout);
+    // Of one whose force has noise, and freezes for thirty rows.
+    let mut frozen = Table::parse(&scratch.read("log.csv"));
+    for row in 0..frozen.rows.len() {
+        let noisy = frozen.rows[row][force].parse::<f64>().unwrap() * (1.0 + 0.01 * (9e3 * row as f64).sin());
+        frozen.rows[row][force] = noisy.to_string();
+    }
+    (61..91).for_each(|row| frozen.rows[row][force] = frozen.rows[60][force].clone());
+    scratch.write("frozen.csv", &frozen.text());
+    let odd = scratch.run(&["check-input", "frozen.csv", "--scene", "scene.toml"]);
+    let named = odd.stdout.contains("the force of palm 2 repeats from") && odd.stdout.contains("30 samples");
+    assert!(odd.code == Some(4) && named, "{}", odd.stdout);
 }
 
 #[test]

@@ -38,7 +38,5 @@ pub fn least_plane_estimate(
 /// # Errors
 /// Those of a log that is left with less than two samples.
 pub fn one_of_plane(log: &ContactLog, every: usize) -> Result<ContactLog, ContactLogError> {
-    let samples = log.samples().iter().step_by(every.max(1)).cloned().collect();
-    let truth = log.truth().map(|truth| truth.iter().step_by(every.max(1)).copied().collect());
-    ContactLog::new(log.surfaces().to_vec(), samples, truth)
+    log.picked(&(0..log.samples().len()).step_by(every.max(1)).collect::<Vec<_>>())
 }

@@ -2,7 +2,7 @@ use super::modes::StreamModes;
 use crate::contacts::options::{ContactEstimateError, ContactOptions};
 use glam::DMat3;
 use nalgebra::SMatrix;
-use object_dynamics::{BodyState, MOST_PALMS};
+use object_dynamics::{BodyState, MOST_PALMS, StuckReading};
 use thiserror::Error;
 
 /// What a stream must know beforehand.
@@ -152,6 +152,20 @@ pub enum StreamError {
         palm: usize,
         /// s.
         t: f64,
+    },
+    /// A reading repeats, which its noise never lets it.
+    #[error(
+        "the {what} of palm {palm} at t = {t} s repeats for {run} samples in a row, which its noise never lets it: a sensor that is frozen, or at the end of its range"
+    )]
+    Stuck {
+        /// Which.
+        what: StuckReading,
+        /// Palm from 1.
+        palm: usize,
+        /// s.
+        t: f64,
+        /// Samples in a row that repeat the one before.
+        run: usize,
     },
     /// The system gives no thread to estimate in, or it is gone.
     #[error(

@@ -11,7 +11,7 @@ use super::thread::Worker;
 use super::window::{Asked, LONGEST, Outcome, Window};
 use crate::contacts::options::ContactEstimateError;
 use glam::DVec3;
-use object_dynamics::MOST_PALMS;
+use object_dynamics::{MOST_PALMS, SensedAxes, StuckWatch};
 use std::collections::VecDeque;
 
 /// Natural times after which a window that follows a motion is taken, and the next one is asked for.
@@ -34,6 +34,8 @@ const PATIENCE: f64 = 1.0;
 /// A palm that is not touched gives no condition; where none is, the body flies.
 pub struct MotionStream {
     palms: Vec<StreamPalm>,
+    /// What tells of each palm whether its readings are stuck.
+    watches: [StuckWatch; MOST_PALMS],
     options: StreamOptions,
     worker: Worker,
     /// Samples that the thread has not been given.
@@ -84,6 +86,7 @@ impl MotionStream {
             freed: palms.iter().map(|_| None).collect(),
             modes: None,
             palms,
+            watches: [StuckWatch::default(); MOST_PALMS],
             options,
             worker,
             fresh: Vec::with_capacity(2 * FIRST),
@@ -122,10 +125,11 @@ impl MotionStream {
     /// Takes what the palms sense at the time `t` (s) and returns the motion there.
     ///
     /// # Errors
-    /// [`StreamError::Time`], [`StreamError::Palms`], [`StreamError::Reading`] or [`StreamError::NoForce`] for a sample that cannot be used (it
-    /// is left out); [`StreamError::Thread`] where the thread that estimates is gone.
+    /// [`StreamError::Time`], [`StreamError::Palms`], [`StreamError::Reading`], [`StreamError::NoForce`] or [`StreamError::Stuck`] for a sample that cannot be
+    /// used (it is left out); [`StreamError::Thread`] where the thread that estimates is gone.
     pub fn push(&mut self, t: f64, sensed: &[PalmSensed]) -> Result<StreamEstimate, StreamError> {
         let raw = self.checked(t, sensed)?;
+        self.refuse_stuck(t, sensed)?;
         let since = t - self.latest;
         self.latest = t;
         self.count += 1;
@@ -184,6 +188,20 @@ impl MotionStream {
             *kept = Some(*palm);
         }
         Ok(Raw { number: self.count, t, palms })
+    }
+
+    fn refuse_stuck(&mut self, t: f64, sensed: &[PalmSensed]) -> Result<(), StreamError> {
+        let mut stuck = None;
+        // Each is to see every sample.
+        for (i, (watch, palm)) in self.watches.iter_mut().zip(sensed).enumerate() {
+            let force = match palm.force {
+                super::ForceReading::Normal(f) => (DVec3::X * f, SensedAxes::Normal),
+                super::ForceReading::Three(f) => (f, SensedAxes::Three),
+            };
+            let found = watch.take(&palm.pose, palm.contact, force);
+            stuck = stuck.or(found.map(|(what, run)| StreamError::Stuck { what, palm: i + 1, t, run }));
+        }
+        stuck.map_or(Ok(()), Err)
     }
 
     fn begin(&mut self, number: usize) -> Result<(), StreamError> {

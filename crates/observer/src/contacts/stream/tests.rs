@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
-    InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, ThreePalmScene,
+    InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, StuckReading, ThreePalmScene,
 };
 
 /// Contacts 0.1 % of the size, forces 1 % of what a palm carries.
@@ -203,6 +203,47 @@ fn a_gap_is_bridged() {
         let largest = case.squares(&estimates).into_iter().fold(0.0, f64::max);
         assert!(largest < 5.8, "{gap}: {largest}");
     }
+}
+
+/// A force that freezes for a fifth of a second is refused from when its repetitions are no chance, and the motion is known again after it.
+#[test]
+fn samples_of_a_sensor_that_is_stuck_are_refused() {
+    let case = calm(8.0);
+    let mut samples = case.samples(&NOISE, 7);
+    let stuck = samples.iter().position(|sample| sample.t >= 5.0).unwrap();
+    let force = samples[stuck].palms[1].force;
+    samples[stuck..stuck + 40].iter_mut().for_each(|sample| sample.palms[1].force = force);
+    let noise = ContactNoiseLevel {
+        contact: NOISE.contact,
+        force_fixed: NOISE.force,
+        force_share: 0.0,
+        impulse: None,
+        floor: 1e-4,
+    };
+    let contacts = ContactOptions { body: Some(case.mass), ..ContactOptions::new(noise, 9.81) };
+    let options = StreamOptions { contacts, sample_rate: RATE };
+    let mut stream = MotionStream::new(PlaneReadings::palms(), options).unwrap();
+    let mut readings = PlaneReadings::new(None);
+    let (mut refused, mut estimates) = (Vec::new(), Vec::new());
+    for sample in &samples {
+        let Some((t, sensed)) = readings.push(sample).unwrap() else { continue };
+        let number = case.truth.iter().position(|truth| (truth.t - t).abs() < 1e-9).unwrap();
+        match stream.push(t, &sensed) {
+            Ok(estimate) => estimates.push((number, estimate)),
+            Err(StreamError::Stuck { what: StuckReading::Force, palm: 2, run, .. }) => {
+                refused.push((number, run))
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+    // Of some thousand readings none repeats: three that do are once in 1e9.
+    assert_eq!(refused.first(), Some(&(stuck + 3, 3)));
+    assert_eq!(refused.last(), Some(&(stuck + 39, 39)));
+    let natural = 0.43;
+    let after = estimates.iter().filter(|(_, e)| e.t > 5.2 + natural);
+    assert!(after.clone().count() > 400 && after.clone().all(|(_, e)| e.stage == StreamStage::Tracking));
+    let largest = case.squares(&estimates).into_iter().fold(0.0, f64::max);
+    assert!(largest < 5.8, "{largest}");
 }
 
 #[test]
