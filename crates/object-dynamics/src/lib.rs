@@ -52,9 +52,9 @@ mod three_palms;
 #[cfg(feature = "noise")]
 pub use contact_log::{ChannelNoise, ContactNoise};
 pub use contact_log::{
-    ContactLog, ContactLogError, ContactPoints, ForceChannel, LoggedPalm, MeasuredMotion, NotThreePlanes,
-    PalmHinge, PalmRecord, RecordedMotion, SensedAxes, SensedForce, Stuck, StuckReading, StuckWatch,
-    ThreePlanes, Touch, TrueContact, TwistSource,
+    ContactLog, ContactLogError, ContactPoints, ForceChannel, Held, LoggedPalm, MeasuredMotion,
+    NotThreePlanes, PalmHinge, PalmRecord, RecordedMotion, RepeatedReading, SensedAxes, SensedForce, Stuck,
+    StuckWatch, ThreePlanes, Touch, TrueContact, TwistSource,
 };
 pub use contacts::{
     ContactScene, ContactSceneError, DriveError, MOST_PALMS, ModeError, PalmContactError, PalmCoordinates,

@@ -31,7 +31,6 @@
 mod bag;
 mod check;
 mod export;
-mod held;
 mod log;
 mod mesh;
 mod mesh_formats;
@@ -61,7 +60,6 @@ pub use check::{CheckError, Fault, check, check_unwritten, outline_stands_out, s
 pub use export::{
     ExportError, ExportFormat, ExportShape, ExportedFile, MassDeviations, ObjectModel, SceneModel,
 };
-pub use held::{Held, HeldReading, held_readings};
 pub use log::{
     AnyLog, ContactRows, LogFileError, LogFileErrorKind, LogReader, PalmSetup, PlaneRows, PoseAgainstScene,
     RowReader, RowSample, log_of_columns, parse_any_log, parse_contact_log, parse_log,

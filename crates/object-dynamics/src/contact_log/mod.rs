@@ -2,6 +2,7 @@
 
 mod build;
 mod error;
+mod held;
 mod motor;
 #[cfg(feature = "noise")]
 mod noise;
@@ -18,6 +19,7 @@ mod twists;
 mod tests;
 
 pub use error::ContactLogError;
+pub use held::Held;
 pub use motor::PalmHinge;
 #[cfg(feature = "noise")]
 pub use noise::{ChannelNoise, ContactNoise};
@@ -26,7 +28,7 @@ pub use record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, SensedAxes, TrueContact,
     TwistSource,
 };
-pub use stuck::{Stuck, StuckReading, StuckWatch};
+pub use stuck::{RepeatedReading, Stuck, StuckWatch};
 pub use three_planes::{NotThreePlanes, ThreePlanes};
 
 use crate::TrueState;

@@ -66,16 +66,16 @@ impl Channel {
     }
 }
 
-/// What of a palm is stuck.
+/// What of a palm repeats.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum StuckReading {
+pub enum RepeatedReading {
     /// Its force.
     Force,
     /// Its contact.
     Contact,
 }
 
-impl fmt::Display for StuckReading {
+impl fmt::Display for RepeatedReading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if *self == Self::Force { "force" } else { "contact" })
     }
@@ -96,7 +96,7 @@ impl StuckWatch {
         pose: &SurfacePose,
         contact: Option<DVec3>,
         (force, axes): (DVec3, SensedAxes),
-    ) -> Option<(StuckReading, usize)> {
+    ) -> Option<(RepeatedReading, usize)> {
         let back = pose.R_WP.conjugate();
         let own_force = if axes == SensedAxes::Three { back * force } else { force };
         let longest = |axes: &mut [[Channel; 3]; 2], readings: [DVec3; 2]| {
@@ -107,8 +107,8 @@ impl StuckWatch {
         let force = longest(&mut self.forces, [force, own_force]);
         let at = contact.unwrap_or_default();
         let contact = longest(&mut self.contacts, [at, back * (at - pose.p_WP)]);
-        let named = |reading: StuckReading| move |run: usize| (reading, run);
-        force.map(named(StuckReading::Force)).or(contact.map(named(StuckReading::Contact)))
+        let named = |reading: RepeatedReading| move |run: usize| (reading, run);
+        force.map(named(RepeatedReading::Force)).or(contact.map(named(RepeatedReading::Contact)))
     }
 }
 
@@ -118,7 +118,7 @@ pub struct Stuck {
     /// From 1.
     pub palm: usize,
     /// Which of its readings.
-    pub reading: StuckReading,
+    pub reading: RepeatedReading,
     /// Their numbers.
     pub samples: Range<usize>,
 }
@@ -154,7 +154,7 @@ impl Stuck {
     }
 
     /// Whether sample `k` is the next of it.
-    fn goes_on_to(&self, palm: usize, reading: StuckReading, k: usize) -> bool {
+    fn goes_on_to(&self, palm: usize, reading: RepeatedReading, k: usize) -> bool {
         (self.palm, self.reading, self.samples.end) == (palm, reading, k)
     }
 }
@@ -174,7 +174,7 @@ mod tests {
     use glam::DQuat;
 
     /// What is stuck of readings `of(k)` with noise, of a palm that turns: `(force, contact)` along the normal.
-    fn stuck(of: impl Fn(usize) -> (f64, DVec3), count: usize) -> Vec<(usize, StuckReading, usize)> {
+    fn stuck(of: impl Fn(usize) -> (f64, DVec3), count: usize) -> Vec<(usize, RepeatedReading, usize)> {
         let mut watch = StuckWatch::default();
         let take = |k: usize| {
             let R_WP = DQuat::from_rotation_y(1e-3 * k as f64);
@@ -204,7 +204,7 @@ mod tests {
         let held = |k: usize| if (200..260).contains(&k) { 200 } else { k };
         let force = stuck(|k| (right(held(k)).0, right(k).1), 400);
         let contact = stuck(|k| (right(k).0, right(held(k)).1), 400);
-        for (found, reading) in [(force, StuckReading::Force), (contact, StuckReading::Contact)] {
+        for (found, reading) in [(force, RepeatedReading::Force), (contact, RepeatedReading::Contact)] {
             // Of 200 readings none repeats: four that do are once in 1e9.
             let (first, last) = (found[0], found[found.len() - 1]);
             assert_eq!((first, last), ((204, reading, 4), (259, reading, 59)));

@@ -6,7 +6,7 @@ use super::any_palms_words::{Checks, evidence, mode_doubts, touch_next, verdict}
 use super::bounds::{BoundsResult, CONFIDENCE, NOTABLE_NOISE};
 use super::export::Object;
 use super::least_model::choice_rows;
-use super::stuck::without_stuck;
+use super::repeated::without_repeated;
 use super::truth::{true_motion, true_shape};
 use super::views::bounds_views;
 use super::words::{margins, sentence};
@@ -23,7 +23,6 @@ use recon::observer::rigid::nearest_turn;
 use recon::shape_bounds::ContactSample;
 use recon_io::{
     EstimateData, INERTIA_LEARNED, Implausibility, Level, MassDeviations, PalmContact, Scene, Sensors,
-    held_readings,
 };
 use std::error::Error;
 use std::path::Path;
@@ -130,7 +129,7 @@ pub(crate) fn estimate_any_palms(
     request: AnyPalmsRequest,
     progress: &Progress,
 ) -> Result<AnyPalms, CliError> {
-    let (log, stuck) = without_stuck(log);
+    let (log, repeated) = without_repeated(log);
     let mut options = options(&log, request.scene, request.together)?;
     options.friction = request.friction;
     options.pose_covariances = request.covariances;
@@ -151,8 +150,7 @@ pub(crate) fn estimate_any_palms(
     let truth = truth.zip(axes).map(|(truth, axes)| true_motion(&truth, axes));
     let mut warnings = request.warnings;
     warnings.extend(choice.iter().filter(|choice| !choice.is_reached).map(Choice::verdict));
-    warnings.extend(stuck.iter().map(|stuck| sentence(stuck)));
-    warnings.extend(held_readings(&log).iter().map(|held| sentence(&held.to_string())));
+    warnings.extend(repeated.iter().map(|repeated| sentence(repeated)));
     warnings.extend(not_relied_on(&estimate));
     warnings.extend(impulses_not_read(&log, &options));
     warnings.extend(misread(&log, &estimate));

@@ -31,12 +31,12 @@ mod planar_read;
 mod plane;
 mod planes;
 mod read;
+mod repeated;
 mod result_bag;
 mod sensor_words;
 mod simulate;
 mod smooth;
 mod sound;
-mod stuck;
 mod truth;
 mod views;
 mod without_forces;
@@ -68,10 +68,10 @@ pub(crate) use read::{
     LoadedLog, LogOf, LogSource, load, read_log, seen_from_meeting_point, sorted_with_forces,
     sorted_without_forces, three_palms,
 };
+pub(crate) use repeated::repeated;
 pub(crate) use simulate::{Simulated, known_body, simulate};
 pub(crate) use smooth::smooth_surface;
 pub(crate) use sound::{Noise, noisy_bounds, pose_bounds, sharp_bounds};
-pub(crate) use stuck::stuck_readings;
 pub(crate) use views::views;
 pub(crate) use without_forces::{WithoutForces, without_forces};
 pub(crate) use without_forces_page::without_forces_page;

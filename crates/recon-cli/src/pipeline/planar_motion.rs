@@ -8,7 +8,7 @@ use super::least_model::{choice_figures, choice_rows};
 use super::planar_motion_bounds::motion_bounds;
 use super::planar_motion_words::{NOTE, evidence, verdict};
 use super::plane::PlanarBounds;
-use super::stuck::plane_without_stuck;
+use super::repeated::plane_without_repeated;
 use crate::error::CliError;
 use recon::least_model::{Accuracy, Choice, least_plane_estimate, one_of_plane};
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
@@ -18,7 +18,7 @@ use recon::observer::reliability::Reliability;
 use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
-    explanation, held_readings, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
+    explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
 };
 use serde_json::{Value, json};
 use std::error::Error;
@@ -52,9 +52,8 @@ pub(crate) fn planar_motion(
     covariances: bool,
 ) -> Result<PlanarMotion, CliError> {
     let friction: Vec<_> = known.palms.iter().map(|(_, friction)| *friction).collect();
-    let (log, mut of_readings) = plane_without_stuck(log, &friction)?;
+    let (log, of_readings) = plane_without_repeated(log, &friction)?;
     let noise = noise(&log, known)?;
-    of_readings.extend(held_readings(&log.in_space(&friction)?).iter().map(ToString::to_string));
     let options = PlaneOptions {
         body: known.mass,
         size: known.size,

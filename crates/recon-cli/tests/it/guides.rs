@@ -128,6 +128,12 @@ fn what_is_understood_of_a_log_is_told() {
     let odd = scratch.run(&["check-input", "held.csv", "--scene", "scene.toml"]);
     let named = odd.stdout.contains("the forces of palm 2 repeat") && odd.stdout.contains("over 2.0 rows");
     assert!(odd.code == Some(4) && named && !odd.stdout.contains("palm 1 repeat"), "{}", odd.stdout);
+    // Rows at which it says nothing new are left out of an estimate.
+    let made = scratch.run(&["reconstruct", "held.csv", "--scene", "scene.toml", "-o", "of_held"]);
+    assert!(matches!(made.code, Some(0 | 4)), "{}", made.stderr);
+    assert_eq!(Table::parse(&scratch.read("of_held/motion.csv")).rows.len(), held.rows.len().div_ceil(2));
+    let summary = scratch.read("of_held/summary.json");
+    assert!(summary.contains("The forces of palm 2 repeat") && summary.contains("are left out"), "{summary}");
     // Of one whose force has noise, and freezes for thirty rows.
     let mut frozen = Table::parse(&scratch.read("log.csv"));
     for row in 0..frozen.rows.len() {

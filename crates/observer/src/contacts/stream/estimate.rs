@@ -2,7 +2,7 @@ use super::modes::StreamModes;
 use crate::contacts::options::{ContactEstimateError, ContactOptions};
 use glam::DMat3;
 use nalgebra::SMatrix;
-use object_dynamics::{BodyState, MOST_PALMS, StuckReading};
+use object_dynamics::{BodyState, MOST_PALMS, RepeatedReading};
 use thiserror::Error;
 
 /// What a stream must know beforehand.
@@ -159,7 +159,7 @@ pub enum StreamError {
     )]
     Stuck {
         /// Which.
-        what: StuckReading,
+        what: RepeatedReading,
         /// Palm from 1.
         palm: usize,
         /// s.

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::integrate::Tolerance;
 use object_dynamics::{
-    InitialMotion, Instant, MassProperties, Sample, SampleTimes, SensorNoise, StuckReading, ThreePalmScene,
+    InitialMotion, Instant, MassProperties, RepeatedReading, Sample, SampleTimes, SensorNoise, ThreePalmScene,
 };
 
 /// Contacts 0.1 % of the size, forces 1 % of what a palm carries.
@@ -230,7 +230,7 @@ fn samples_of_a_sensor_that_is_stuck_are_refused() {
         let number = case.truth.iter().position(|truth| (truth.t - t).abs() < 1e-9).unwrap();
         match stream.push(t, &sensed) {
             Ok(estimate) => estimates.push((number, estimate)),
-            Err(StreamError::Stuck { what: StuckReading::Force, palm: 2, run, .. }) => {
+            Err(StreamError::Stuck { what: RepeatedReading::Force, palm: 2, run, .. }) => {
                 refused.push((number, run))
             }
             Err(error) => panic!("{error}"),

@@ -2,7 +2,7 @@
 
 use super::{Readings, Understood};
 use crate::error::CliError;
-use crate::pipeline::{LoadedLog, LogOf, sorted_with_forces, stuck_readings, with_palms};
+use crate::pipeline::{LoadedLog, LogOf, repeated, sorted_with_forces, with_palms};
 use glam::DVec3;
 use recon::contact_kinematics::PalmSurface;
 use recon::object_dynamics::planar::ContactLog as PlanarLog;
@@ -10,8 +10,7 @@ use recon::object_dynamics::{ContactLog, LoggedPalm, SensedAxes, TwistSource};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::plane_noise;
 use recon_io::{
-    AnyLog, PlanarKnown, Scene, Sensors, brief, brief_to, held_readings, implausibilities,
-    implausible_contacts,
+    AnyLog, PlanarKnown, Scene, Sensors, brief, brief_to, implausibilities, implausible_contacts,
 };
 use serde_json::{Value, json};
 
@@ -31,8 +30,7 @@ pub(super) fn told(loaded: LoadedLog, scene: &Scene) -> Result<Understood, CliEr
         AnyLog::Contacts(log) => (log.clone(), 2, ANY_PALMS, implausible_contacts(log, scene)),
     };
     let mut warnings: Vec<String> = odd.iter().map(ToString::to_string).collect();
-    warnings.extend(stuck_readings(&contacts));
-    warnings.extend(held_readings(&contacts).iter().map(ToString::to_string));
+    warnings.extend(repeated(&contacts));
     warnings.extend(loaded.warnings.clone());
     let estimated_as = match sorted_with_forces(loaded, scene).log {
         LogOf::ThreePalms(_) => "three flat palms without friction".to_owned(),
@@ -68,10 +66,7 @@ pub(super) fn told_in_plane(log: &PlanarLog, known: PlanarKnown) -> Result<Under
         sensors: known.sensors,
         mass: known.mass.map(|body| body.mass()),
         estimated_as: "contacts of palms in the plane".to_owned(),
-        warnings: stuck_readings(&contacts)
-            .into_iter()
-            .chain(held_readings(&contacts).iter().map(ToString::to_string))
-            .collect(),
+        warnings: repeated(&contacts),
         contacts,
     };
     Ok(read.told())
