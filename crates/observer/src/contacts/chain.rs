@@ -254,7 +254,7 @@ impl<const P: usize> Chain<P> {
     }
 
     /// The nodes from the root to the first one, and those after the root to the last one, each with its number.
-    pub(super) fn from_root(&self) -> [Vec<(usize, &Eliminated<P>)>; 2] {
+    pub(super) fn both_sides(&self) -> [Vec<(usize, &Eliminated<P>)>; 2] {
         let count = self.first.len();
         let after = |(i, node)| (count + i, node);
         [

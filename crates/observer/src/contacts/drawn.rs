@@ -28,7 +28,7 @@ pub(super) struct Joint<const P: usize> {
 impl<const P: usize> Covariances<P> {
     /// Of the motions at those nodes, in order.
     pub(super) fn joint(&self, nodes: &[usize]) -> Joint<P> {
-        let [before, after] = self.chain.from_root();
+        let [before, after] = self.chain.both_sides();
         let asked = |j: usize| nodes.binary_search(&j).is_ok();
         let root = before.first().filter(|_| !after.is_empty()).map(|(j, _)| *j);
         Joint {

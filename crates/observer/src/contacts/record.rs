@@ -354,7 +354,7 @@ fn contacts_at(
         let felt = Contact::new(palm, logged.surface(), &touch, &motion, force, frictionless, options.planar);
         // All in one plane, about which they scatter by noise alone.
         let c = felt.c - origin;
-        let u_deviation = missed[palm].at(felt.c.distance(motion.pose.p_WP));
+        let u_deviation = missed[palm].at(k, felt.c.distance(motion.pose.p_WP));
         // A contact that was read is put on the palm where that is now: what repeats itself is the force.
         let repeated = k.checked_sub(1).is_some_and(|before| {
             let along = |k: usize| Some(logged.force(k)?.vector.dot(logged.touch(k)?.n.get()));

@@ -13,6 +13,7 @@ use super::sharp::found;
 use super::solve::{Solved, solve};
 use glam::{DQuat, DVec3};
 use nalgebra::{SMatrix, SVector};
+use object_dynamics::ContactMode;
 
 /// Natural times from node to node in the coarse solution at least, and in the last one at most: contacts between are carried there from the node
 /// before. Forces without noise carry a motion farther.
@@ -245,6 +246,9 @@ pub(super) fn fine_within(problem: &mut Problem, start: Unknowns, most: usize) -
 }
 
 /// Nodes of the last solution: each sample, or as far apart as noise of the forces does nothing to the conditions between.
+///
+/// What noise of contacts does to a condition falls with the rate of the body: of one that rests, or rolls without slip, a condition may be as good as its
+/// floor, and any noise of the forces is more than that. In the plane bodies rest and turn back, so that there each sample is a node.
 pub(super) fn fine_nodes(problem: &Problem) -> Vec<usize> {
     nodes_within(problem, problem.link())
 }
@@ -258,6 +262,8 @@ fn nodes_within(problem: &Problem, farthest: f64) -> Vec<usize> {
     let Problem { record, units, .. } = problem;
     let limit = (NEGLIGIBLE * problem.condition_deviation() * units.mass).powi(2);
     let last = record.times.len() - 1;
+    let sticks = |k: usize| record.contacts[k].iter().any(|contact| contact.mode == ContactMode::Stick);
+    let sharp = |k: usize| !problem.exact && (problem.planar || sticks(k));
     let (mut nodes, mut noise, mut conditions) = (vec![0], 0.0, 0.0);
     for k in 1..last {
         let interval = &record.intervals[k - 1];
@@ -265,7 +271,7 @@ fn nodes_within(problem: &Problem, farthest: f64) -> Vec<usize> {
         conditions += record.contacts[k].len() as f64;
         let after = record.intervals[k].velocity_noise(units.length);
         let long = record.times[k + 1] - record.times[nodes[nodes.len() - 1]] > farthest;
-        if long || interval.blow || (noise + after) * conditions > limit {
+        if long || interval.blow || sharp(k) || (noise + after) * conditions > limit {
             nodes.push(k);
             (noise, conditions) = (0.0, 0.0);
         }
