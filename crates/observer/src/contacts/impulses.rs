@@ -96,7 +96,7 @@ const SEEN: f64 = 9.0;
 
 /// What a contact goes on by in an interval that it would not but for a change of its speed within the one between the two samples in the middle of six, the last of
 /// which is `at(0)`: what the way changes by there beyond the changes beside it, as far as noise of the given deviation, m, does not make it. None where none is seen.
-fn kink<'a>(at: impl Fn(usize) -> Option<&'a Contact>, deviation: f64) -> Option<DVec3> {
+pub(super) fn kink<'a>(at: impl Fn(usize) -> Option<&'a Contact>, deviation: f64) -> Option<DVec3> {
     let c = |back: usize| at(back).map(|contact| contact.c);
     let (a, b, c, d, e, f) = (c(5)?, c(4)?, c(3)?, c(2)?, c(1)?, c(0)?);
     let beside = a - 2.0 * b + c + (d - 2.0 * e + f);

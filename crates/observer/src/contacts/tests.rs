@@ -20,6 +20,7 @@ mod lasting;
 mod levers;
 mod misread_forces;
 mod mode_odds;
+mod nodes;
 mod poses;
 mod rough;
 mod steady;

@@ -4,6 +4,7 @@
 //! both are of one size a node follows its own contact, and least squares over so many nodes find the body wrong by several of their
 //! deviations. A contact averaged over a window leaves the condition in the window's middle as it is, with less noise.
 
+use super::impulses::kink;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::problem::Units;
 use super::record::{Contact, Interval, Record, Wrench};
@@ -91,12 +92,21 @@ pub(super) fn windows(record: &Record, longest: f64) -> Vec<Window> {
     let same = |a: usize, b: usize| touched(a).eq(touched(b));
     let mut all = Vec::new();
     let alone = |k: usize| k == 0 || k == count - 1 || record.beside_blow(k);
+    // Where the curvature of an outline jumps a contact changes its speed, and no parabola follows it.
+    let kinked = |k: usize| {
+        let of = |palm: usize| {
+            let at = |k: usize| record.contacts.get(k)?.iter().find(|contact| contact.palm == palm);
+            kink(|back| at((k + 2).checked_sub(back)?), record.deviation).is_some()
+        };
+        record.contacts[k].iter().any(|contact| contact.planar && of(contact.palm))
+    };
     let mut run = 0..0;
     let mut from = 0;
     while from < count {
         if from == run.end {
             // Nodes are at the first sample and the last, so that all lie between two, and on both sides of a blow.
-            let more = (from + 1..count).take_while(|&k| !alone(from) && !alone(k) && same(from, k)).count();
+            let goes_on = |&k: &usize| !alone(from) && !alone(k) && same(from, k) && !kinked(k);
+            let more = (from + 1..count).take_while(goes_on).count();
             run = from..from + 1 + more;
         }
         let fits = |end: &usize| record.times[*end] - record.times[from] < longest;

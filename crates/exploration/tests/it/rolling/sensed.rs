@@ -3,8 +3,8 @@
 use contact_kinematics::planar::{FourierBody, RadiusFunction};
 use exploration::planar::PlanarKnowledge;
 use exploration::rolling::{
-    HandsError, InformationRate, RollError, RollTask, SensedError, SensedOutcome, SensedStep, SensedTask,
-    SimulatedHands, Workspace, explore_sensed, noisy_curves,
+    Hands, HandsError, InformationRate, RollError, RollTask, SensedError, SensedOutcome, SensedStep,
+    SensedTask, SimulatedHands, Workspace, explore_sensed, noisy_curves,
 };
 use exploration::{ConfidenceError, Goal, Heading, Knowledge, KnowledgeError};
 use object_dynamics::planar::{PlanarMass, PlanarObject};
@@ -87,6 +87,29 @@ fn an_estimate_takes_no_contact_beside_it() {
     assert_eq!(known.confidence(), Some(0.95));
     let contact = curves[0][0].contact;
     assert_eq!(known.insert(contact), Err(KnowledgeError::Estimated));
+}
+
+/// A body that rests and rolls without slip between palms that rub: its contacts are known as well as their floor there, and nothing between samples is noise
+/// that does not count.
+#[test]
+fn a_body_that_rolls_on_palms_that_rub_is_followed() {
+    let mass = PlanarMass::from_gyration(0.2, 1.1e-3).unwrap();
+    let object = PlanarObject { shape: shape(), mass, gravity: GRAVITY };
+    let rate = 500.0;
+    let hands = SimulatedHands::new(object, 0.2, 0.4, [0.7, 2.4], 0.3, rate).unwrap();
+    let mut hands = hands.with_noise(NOISE, 5);
+    for to in [[0.1, 2.5], [0.1, 2.1], [1.15, 2.0], [0.6, 2.6]] {
+        Hands::turn(&mut hands, to, 0.25, 0.1).unwrap();
+    }
+    let log = Hands::log(&hands).unwrap();
+    let impulse = Some(ImpulseNoise { fixed: NOISE[1] / rate, share: 0.0 });
+    let noise = ContactNoiseLevel { impulse, floor: 7e-7, ..task(0.1).sensors.noise };
+    let sensors = PlaneOptions::new(noise, GRAVITY, vec![Some(0.2); 2]);
+    let estimate = estimate_plane(&log, &sensors).unwrap();
+    assert!(estimate.reliability.is_reliable(), "{:?}", estimate.reliability);
+    assert!(estimate.evidence.misfit < 1.1, "{:?}", estimate.evidence);
+    let relied_on = estimate.relied_on.iter().filter(|relied_on| **relied_on).count();
+    assert!(relied_on * 100 >= 99 * log.samples().len(), "{relied_on} of {}", log.samples().len());
 }
 
 #[test]
