@@ -49,7 +49,7 @@ impl Channel {
             return Some(self.run).filter(|run| self.is_stuck(*run));
         }
         // A stuck sensor does not make repetitions usual, nor one that was stuck before anything was usual.
-        if !self.is_stuck(self.run) {
+        if self.run > 0 && !self.is_stuck(self.run) {
             self.again += self.run.min(COUNTED);
         }
         let (step, bend) = (now - before, now - before - self.step);
