@@ -87,7 +87,8 @@ pub(crate) fn main() -> Result<(), Failure> {
     let part = words.next();
     let asked = |name: &str| part.as_deref().is_none_or(|part| part == name);
     println!("{}\n", include_str!("intro.md").trim_end());
-    println!("Made by `cargo xtask study rolling_sensed {bodies} {runs} {first}`.\n");
+    let of_part = part.as_ref().map(|part| format!(" {part}")).unwrap_or_default();
+    println!("Made by `cargo xtask study rolling_sensed {bodies} {runs} {first}{of_part}`.\n");
     let seeds = first..first + bodies;
     if asked("planners") {
         compare(&seeds)?;

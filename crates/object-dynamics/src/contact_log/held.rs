@@ -1,15 +1,13 @@
 //! Readings that are told again and again until there is a new one: of a sensor that measures less often than the log has samples.
 
-use super::stuck::RepeatedReading;
-use super::{ContactLog, LoggedPalm};
+use super::ContactLog;
+use super::stuck::{ROUNDING, RepeatedReading, on_palm};
 use glam::DVec3;
 
 /// Readings from which on it is told whether they are held, and how many of a hundred new ones may be as one before: of a sensor that counts in steps
 /// more are, and of one that measures none.
 const FEWEST: usize = 10;
 const IN_STEPS: usize = 5;
-/// Share of a reading by which one that was turned into other axes and back differs from itself.
-const ROUNDING: f64 = 1e-12;
 
 /// Readings of a palm that repeat, most of them, until there is a new one. What is told again comes late by so much.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,19 +38,14 @@ impl ContactLog {
             let force = |k: usize| Some(logged.force(k)?.vector);
             let along = |k: usize| Some(DVec3::X * force(k)?.dot(logged.touch(k)?.n.get()));
             let place = |k: usize| Some(logged.touch(k)?.p_WC);
-            let on_palm = |k: usize| on_palm(logged, k);
+            let own_place = |k: usize| Some(on_palm(&logged.motion(k).pose, place(k)?));
             let reading = RepeatedReading::Force;
             all.extend(held(reading, &force).or_else(|| held(reading, &along)));
             let reading = RepeatedReading::Contact;
-            all.extend(held(reading, &place).or_else(|| held(reading, &on_palm)));
+            all.extend(held(reading, &place).or_else(|| held(reading, &own_place)));
         }
         all
     }
-}
-
-fn on_palm(logged: &LoggedPalm, k: usize) -> Option<DVec3> {
-    let pose = logged.motion(k).pose;
-    Some(pose.R_WP.conjugate() * (logged.touch(k)?.p_WC - pose.p_WP))
 }
 
 /// Samples for each reading where most are told more than once, and those at which one is told again. None where they are not, of too few, and of what

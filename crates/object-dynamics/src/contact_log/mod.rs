@@ -24,6 +24,7 @@ pub use motor::PalmHinge;
 #[cfg(feature = "noise")]
 pub use noise::{ChannelNoise, ContactNoise};
 pub use palm::{LoggedPalm, SensedForce, Touch};
+pub(crate) use picked::some;
 pub use record::{
     ContactPoints, ForceChannel, MeasuredMotion, PalmRecord, RecordedMotion, SensedAxes, TrueContact,
     TwistSource,

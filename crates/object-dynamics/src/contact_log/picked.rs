@@ -14,7 +14,8 @@ impl ContactLog {
     }
 }
 
-fn some<T: Clone>(all: &[T], samples: &[usize]) -> Vec<T> {
+/// Those of `all` at these numbers.
+pub(crate) fn some<T: Clone>(all: &[T], samples: &[usize]) -> Vec<T> {
     samples.iter().filter_map(|&k| all.get(k)).cloned().collect()
 }
 

@@ -15,7 +15,7 @@ const COUNTED: usize = 3;
 /// Share of second differences that turn about in what is noise: of white noise it is three quarters, of what is smooth nearly none.
 const NOISY: f64 = 0.25;
 /// Share of a reading by which one that was turned into other axes and back differs from itself.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 
 /// Follows one axis of the readings of a sensor.
 #[derive(Clone, Copy, Debug, Default)]
@@ -97,8 +97,7 @@ impl StuckWatch {
         contact: Option<DVec3>,
         (force, axes): (DVec3, SensedAxes),
     ) -> Option<(RepeatedReading, usize)> {
-        let back = pose.R_WP.conjugate();
-        let own_force = if axes == SensedAxes::Three { back * force } else { force };
+        let own_force = if axes == SensedAxes::Three { pose.R_WP.conjugate() * force } else { force };
         let longest = |axes: &mut [[Channel; 3]; 2], readings: [DVec3; 2]| {
             let each =
                 axes.iter_mut().flatten().zip(readings.into_iter().flat_map(|reading| reading.to_array()));
@@ -106,7 +105,7 @@ impl StuckWatch {
         };
         let force = longest(&mut self.forces, [force, own_force]);
         let at = contact.unwrap_or_default();
-        let contact = longest(&mut self.contacts, [at, back * (at - pose.p_WP)]);
+        let contact = longest(&mut self.contacts, [at, on_palm(pose, at)]);
         let named = |reading: RepeatedReading| move |run: usize| (reading, run);
         force.map(named(RepeatedReading::Force)).or(contact.map(named(RepeatedReading::Contact)))
     }
@@ -157,6 +156,11 @@ impl Stuck {
     fn goes_on_to(&self, palm: usize, reading: RepeatedReading, k: usize) -> bool {
         (self.palm, self.reading, self.samples.end) == (palm, reading, k)
     }
+}
+
+/// A place in the world in the palm's axes, m.
+pub(super) fn on_palm(pose: &SurfacePose, p_W: DVec3) -> DVec3 {
+    pose.R_WP.conjugate() * (p_W - pose.p_WP)
 }
 
 /// A force as the sensor reads it; zero where it is not measured.

@@ -3,6 +3,7 @@
 use super::contacts::ContactScene;
 use super::hybrid::{ContactInstant, ContactSimulation};
 use super::log::PlanarTruth;
+use crate::contact_log::some;
 use crate::series::{MOST_READING, check_lengths, check_order, is_taken};
 use crate::{ContactMode, MOST_PALMS, SeriesError};
 use contact_kinematics::planar::{PalmSurface, RadiusBounds, RadiusFunction, SurfaceError, SurfacePose};
@@ -159,10 +160,6 @@ impl ContactLog {
     pub fn truth(&self) -> Option<&[PlanarTruth]> {
         self.truth.as_deref()
     }
-}
-
-fn some<T: Clone>(all: &[T], samples: &[usize]) -> Vec<T> {
-    samples.iter().filter_map(|&k| all.get(k)).cloned().collect()
 }
 
 impl ContactSimulation {

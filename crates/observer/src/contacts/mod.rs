@@ -89,6 +89,7 @@ mod surprise;
 mod suspects;
 #[cfg(test)]
 mod tests;
+mod trial;
 mod triangular;
 mod unchanging;
 mod unresolved;

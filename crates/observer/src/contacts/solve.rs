@@ -3,8 +3,9 @@
 use super::chain::{Chain, Known};
 use super::equations::{Equations, Room};
 use super::flow::Transition;
-use super::problem::{Problem, Trial, Unknowns};
+use super::problem::{Problem, Unknowns};
 use super::state::{MOTION, Tangent};
+use super::trial::Trial;
 use crate::least_squares::{LARGEST_DAMPING, RAISE, lowered};
 use crate::reliability::LARGEST_MISFIT;
 use nalgebra::{SMatrix, SVector};
