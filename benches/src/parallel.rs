@@ -4,15 +4,17 @@ use crate::reaching::{Bodies, Named};
 use crate::rows::{Cells, rows_in_threads};
 use exploration::generators::{Family, solid};
 use exploration::parallel::{
-    LargestGap, NearestGap, ParallelError, ParallelPlanError, ParallelPlanner, ParallelProposal,
-    ParallelTask, ParallelView, ParallelWorkspace, PathRate, RandomStrokes, RasterSweep,
+    EstimatedPalms, LargestGap, NearestGap, ParallelError, ParallelPalms, ParallelPlanError, ParallelPlanner,
+    ParallelProposal, ParallelTask, ParallelView, ParallelWorkspace, PathRate, RandomStrokes, RasterSweep,
     SimulatedParallelPalms, Stop, explore_parallel,
 };
 use exploration::space::{Noise, SpaceKnowledge};
 use exploration::{
     Confidence, Goal, Heading, Knowledge, KnowledgeError, Outcome, Shortfall, Source, Spending,
 };
+use glam::{DQuat, DVec3};
 use recon::contact_kinematics::Direction;
+use recon::observer::rolling::RollingNoise;
 use std::time::Instant;
 
 /// All that are compared.
@@ -46,8 +48,8 @@ pub struct Setting {
     pub goal: f64,
     /// Way of the palm at most, in mean widths.
     pub way: f64,
-    /// Deviation of a point over the mean width, normals by twice that in rad, 95 % shared among so many contacts; none for exact ones.
-    pub noise: Option<(f64, usize)>,
+    /// Noise of the palms over the mean width, with what pads let spin, 95 % shared among so many contacts; none for exact contacts in axes of the body.
+    pub noise: Option<(RollingNoise, usize)>,
 }
 
 /// What a planner did on one body.
@@ -134,17 +136,27 @@ pub fn run(
         return Ok(run);
     };
     let mut known = SpaceKnowledge::exact();
-    if let Some((level, budget)) = setting.noise {
-        let spending = Spending::Budget(budget);
-        let confidence = Confidence::new(0.95, spending)
-            .map_err(|e| ParallelError::Knowledge(KnowledgeError::Confidence(e)))?;
-        known = SpaceKnowledge::noisy(Noise { point: level * size, normal: 2.0 * level, confidence });
-        palms = palms.with_noise(level * size, 2.0 * level, seed);
-        task.spending = Some(spending);
-    }
+    // How axes of the body that are estimated lie to its own.
+    let mut own = (DQuat::IDENTITY, DVec3::ZERO);
+    let mut estimated;
+    let palms: &mut dyn ParallelPalms = match setting.noise {
+        Some((over, budget)) => {
+            let noise =
+                RollingNoise { contact: over.contact * size, palm: over.palm * size, spin: over.spin };
+            let spending = Spending::Budget(budget);
+            let confidence = Confidence::new(0.95, spending)
+                .map_err(|e| ParallelError::Knowledge(KnowledgeError::Confidence(e)))?;
+            known = SpaceKnowledge::noisy(Noise { point: noise.palm, normal: 0.0, confidence });
+            task.spending = Some(spending);
+            own = palms.pose();
+            estimated = EstimatedPalms::new(palms.with_noise(noise, seed), noise)?;
+            &mut estimated
+        }
+        None => &mut palms,
+    };
     let mut planner = Timed { inner: make(seed), seconds: [0.0; 2] };
     let (mut turned, mut last, mut seen) = (0.0, None, 0);
-    let outcome = explore_parallel(&mut known, &mut planner, &mut palms, &task, |step, known| {
+    let outcome = explore_parallel(&mut known, &mut planner, palms, &task, |step, known| {
         let up = step.reading.hold.normals()[0];
         turned += last.map_or(0.0, |last: Direction| last.angle_to(up));
         last = Some(up);
@@ -155,7 +167,9 @@ pub fn run(
         if known.touches() > seen {
             seen = known.touches();
             run.holds &= lattice.iter().all(|u| {
-                let ((low, high), h) = (known.support(*u), body(*u).dot(u.get()));
+                let (low, high) = known.support(*u);
+                let along = Direction::new(own.0.inverse() * u.get()).unwrap_or(*u);
+                let h = (own.0 * body(along) + own.1).dot(u.get());
                 low - 1e-9 <= h && h <= high + 1e-9
             });
         }

@@ -16,6 +16,7 @@
 //! | motion and shape from where three palms are touched, without forces | [`three_palms::no_force`] |
 //! | tell whether contacts slide, stick or are off | [`contact_modes`] |
 //! | all that in the plane | [`planar`] |
+//! | pose of an object that two parallel palms roll between them | [`rolling`] |
 //! | outline and friction of an object that is pushed over a table | [`pushes`] |
 //! | read what an estimate says of itself, of sensors, of poses | [`reliability`], [`faults`], [`rigid`] |
 //! | the paper's own method, as an oracle | [`three_palms::paper_method`] |
@@ -91,6 +92,8 @@ mod random;
 pub mod reliability;
 #[cfg(feature = "palms")]
 pub mod rigid;
+#[cfg(feature = "palms")]
+pub mod rolling;
 #[cfg(feature = "palms")]
 mod roughness;
 #[cfg(feature = "palms")]

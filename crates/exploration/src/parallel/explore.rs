@@ -124,9 +124,12 @@ impl Loop<'_> {
     /// Takes those contacts of a reading that were, by the reading before, where nothing is known yet. The choice does not look at
     /// what is taken: under noise its chance of misleading is the one that was stated.
     fn learn(&mut self, reading: &FeltBetween) -> Result<(), KnowledgeError> {
-        for (contact, last) in reading.contacts.iter().zip(&mut self.last) {
+        for (i, (contact, last)) in reading.contacts.iter().zip(&mut self.last).enumerate() {
             if unfelt(self.known, *last, self.task.spacing) || self.known.touches() < 2 {
-                self.known.insert(*contact)?;
+                match &reading.noise {
+                    Some(noise) => self.known.insert_with(*contact, noise[i])?,
+                    None => self.known.insert(*contact)?,
+                }
             }
             *last = contact.normal;
         }

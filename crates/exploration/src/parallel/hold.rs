@@ -86,7 +86,22 @@ impl Hold {
     /// The arcs that are rolled over are the changes of the contact points, turned into the world at the mean of both orientations: what is left
     /// out is of third order in the turn.
     pub(super) fn rolled(&self, body: &impl Held, heading: DVec2, turn: f64) -> (Self, f64) {
-        let axis = DVec3::new(-heading.y, heading.x, 0.0);
+        self.turned(body, DVec3::new(-heading.y, heading.x, 0.0), turn)
+    }
+
+    /// After a turn by `turn` rad about the line through both contacts: pads that give a little let that happen.
+    pub(super) fn spun(&self, body: &impl Held, turn: f64) -> Self {
+        self.turned(body, self.span(body).normalize_or(DVec3::Z), turn).0
+    }
+
+    /// From the lower contact to the upper one, world axes, m.
+    pub(super) fn span(&self, body: &impl Held) -> DVec3 {
+        let [up, down] = self.normals();
+        self.R_WO * (body.farthest(up) - body.farthest(down))
+    }
+
+    /// After a turn about `axis` without slip, and how far the upper palm went with it, m.
+    fn turned(&self, body: &impl Held, axis: DVec3, turn: f64) -> (Self, f64) {
         let R_WO = (DQuat::from_axis_angle(axis, turn) * self.R_WO).normalize();
         let half = (DQuat::from_axis_angle(axis, 0.5 * turn) * self.R_WO).normalize();
         let next = Self { R_WO, pads: self.pads };

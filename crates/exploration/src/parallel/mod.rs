@@ -8,10 +8,12 @@
 //! The weight is taken to be small against the squeeze. Two forces that hold a body are on one line, along `d`: nothing slips as long as its tangent to
 //! the normals, `|d - w u| / w = |grad w| / w`, is at most the coefficient of friction (Nguyen, 1988). Palms feel this ratio, and stop short of it. What is squeezed where the ratio is larger tips over to where it is narrower.
 //!
-//! World Z is up; the lower palm is the plane `z = 0` and stands still; all angles are in rad, lengths in m. Contacts are in the frame of the body, whose orientation an estimator gives: what
-//! that is worth is part of the noise that is stated. What is proven rests on the contacts alone, and on none of the above.
+//! World Z is up; the lower palm is the plane `z = 0` and stands still; all angles are in rad, lengths in m. Contacts are in the frame of the body. [`EstimatedPalms`] has it
+//! from what palms sense ([`observer::rolling`]), with how far it may be off: that neither contact slips is looked at there, that pads let it spin no more than stated is taken for true. Of exact contacts
+//! what is proven rests on the contacts alone, and on none of the above.
 
 mod belief;
+mod estimated;
 mod explore;
 mod hold;
 mod palms;
@@ -21,9 +23,10 @@ mod predict;
 mod simulated;
 mod workspace;
 
+pub use estimated::EstimatedPalms;
 pub use explore::{ParallelError, ParallelStep, ParallelTask, explore_parallel};
 pub use hold::{Hold, Stop, Stroke, Wall};
-pub use palms::{FeltBetween, ParallelPalms, ParallelPalmsError};
+pub use palms::{FeltBetween, ParallelPalms, ParallelPalmsError, SensedPalms};
 pub use planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
 pub use planners::{LargestGap, NearestGap, PathRate, RandomStrokes, RasterSweep};
 pub use predict::Prediction;

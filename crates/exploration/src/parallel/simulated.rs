@@ -1,20 +1,21 @@
 //! Palms with a body that is computed.
 
 use super::hold::{Held, Hold, Stop, steps};
-use super::palms::{FeltBetween, ParallelPalms, ParallelPalmsError};
+use super::palms::{FeltBetween, ParallelPalms, ParallelPalmsError, SensedPalms};
 use super::workspace::ParallelWorkspace;
 use crate::random::Source;
 use contact_kinematics::Direction;
 use glam::{DQuat, DVec2, DVec3};
+use observer::rolling::{RollingNoise, RollingReading};
 use shape_bounds::ContactSample;
 
-/// The convex body whose farthest point along a direction is `support(direction)`, felt with seeded normal noise.
+/// The convex body whose farthest point along a direction is `support(direction)`: felt as it is in its own axes ([`ParallelPalms`]), or by palms with
+/// seeded normal noise that know nothing of its pose ([`SensedPalms`]).
 pub struct SimulatedParallelPalms<F> {
     body: Body<F>,
     workspace: ParallelWorkspace,
     hold: Hold,
-    point: f64,
-    normal: f64,
+    noise: RollingNoise,
     source: Source,
 }
 
@@ -55,54 +56,101 @@ impl<F: Fn(Direction) -> DVec3> SimulatedParallelPalms<F> {
             }
         }
         hold.pads = [DVec2::ZERO; 2];
-        Ok(Self { body, workspace, hold, point: 0.0, normal: 0.0, source: Source::new(0) })
+        let noise = RollingNoise { contact: 0.0, palm: 0.0, spin: 0.0 };
+        Ok(Self { body, workspace, hold, noise, source: Source::new(0) })
     }
 
-    /// With normal noise: standard deviations of a point per axis, in m, and of a normal about each tangent axis, in rad.
+    /// With noise of the sensors, and pads that let the body spin.
     #[must_use]
-    pub fn with_noise(self, point: f64, normal: f64, seed: u64) -> Self {
-        Self { point, normal, source: Source::new(seed), ..self }
+    pub fn with_noise(self, noise: RollingNoise, seed: u64) -> Self {
+        Self { noise, source: Source::new(seed), ..self }
     }
 
-    fn read(&mut self, way: f64, stop: Option<Stop>) -> Result<FeltBetween, ParallelPalmsError> {
+    /// Where the body is from the middle of the lower palm: how it is turned, and its origin, m.
+    #[must_use]
+    pub fn pose(&self) -> (DQuat, DVec3) {
+        let [_, down] = self.hold.normals();
+        let lower = self.hold.pads[1].extend(0.0);
+        (self.hold.R_WO, lower - self.hold.R_WO * self.body.farthest(down))
+    }
+
+    fn felt(&self, way: f64, stop: Option<Stop>) -> Result<FeltBetween, ParallelPalmsError> {
         let [up, down] = self.hold.normals();
-        let (hold, noise) = (self.hold, [self.point, self.normal]);
-        let (body, source) = (&self.body, &mut self.source);
-        let mut felt = |along: Direction, palm: &'static str| {
-            let read = source.reading(body.farthest(along), along, noise);
-            let (point, normal) = read.ok_or(ParallelPalmsError::NotFinite { palm })?;
+        let felt = |normal: Direction, palm: &'static str| {
+            let point = self.body.farthest(normal);
             let finite = point.is_finite().then_some(ContactSample { point, normal });
             finite.ok_or(ParallelPalmsError::NotFinite { palm })
         };
         let contacts = [felt(up, "upper")?, felt(down, "lower")?];
-        Ok(FeltBetween { hold, contacts, way, stop })
+        Ok(FeltBetween { hold: self.hold, contacts, noise: None, way, stop })
+    }
+
+    fn sensed(&mut self) -> RollingReading {
+        let [upper, lower] = self.hold.pads;
+        let span = self.hold.span(&self.body);
+        let middle = lower.extend(0.0) + span - upper.extend(0.0);
+        let RollingNoise { contact, palm, .. } = self.noise;
+        let contacts = [upper, lower].map(|c| c + self.source.normal3().truncate() * contact);
+        RollingReading { upper: middle + self.source.normal3() * palm, contacts }
+    }
+
+    /// One of the equal steps of a stroke, and how far the upper palm went, m.
+    fn step(&mut self, along: DVec2, turn: f64) -> Result<f64, Stop> {
+        let (next, moved) = self.hold.stepped(&self.body, &self.workspace, along, turn)?;
+        let spin = self.noise.spin * turn.abs().sqrt();
+        // Without it nothing is drawn, so that noise of sensors stays what it is.
+        self.hold = if spin > 0.0 { next.spun(&self.body, spin * self.source.normal()) } else { next };
+        Ok(moved)
+    }
+
+    fn strokes(heading: f64, turn: f64) -> Result<(DVec2, usize, f64), ParallelPalmsError> {
+        if !(heading.is_finite() && turn.is_finite()) {
+            return Err(ParallelPalmsError::Stroke { heading, turn });
+        }
+        let (parts, step) = steps(turn, STEP);
+        Ok((DVec2::from_angle(heading), parts, step))
     }
 }
 
 impl<F: Fn(Direction) -> DVec3> ParallelPalms for SimulatedParallelPalms<F> {
     fn feel(&mut self) -> Result<FeltBetween, ParallelPalmsError> {
-        self.read(0.0, None)
+        self.felt(0.0, None)
     }
 
     fn roll(&mut self, heading: f64, turn: f64) -> Result<FeltBetween, ParallelPalmsError> {
-        if !(heading.is_finite() && turn.is_finite()) {
-            return Err(ParallelPalmsError::Stroke { heading, turn });
-        }
-        let along = DVec2::from_angle(heading);
-        let (parts, step) = steps(turn, STEP);
+        let (along, parts, step) = Self::strokes(heading, turn)?;
         let (mut way, mut stop) = (0.0, None);
         for _ in 0..parts {
-            match self.hold.stepped(&self.body, &self.workspace, along, step) {
-                Ok((next, moved)) => {
-                    self.hold = next;
-                    way += moved;
-                }
+            match self.step(along, step) {
+                Ok(moved) => way += moved,
                 Err(why) => {
                     stop = Some(why);
                     break;
                 }
             }
         }
-        self.read(way, stop)
+        self.felt(way, stop)
+    }
+}
+
+impl<F: Fn(Direction) -> DVec3> SensedPalms for SimulatedParallelPalms<F> {
+    fn sense(&mut self) -> Result<RollingReading, ParallelPalmsError> {
+        Ok(self.sensed())
+    }
+
+    fn stroke(
+        &mut self,
+        heading: f64,
+        turn: f64,
+    ) -> Result<(Vec<RollingReading>, Option<Stop>), ParallelPalmsError> {
+        let (along, parts, step) = Self::strokes(heading, turn)?;
+        let mut sensed = Vec::with_capacity(parts);
+        for _ in 0..parts {
+            if let Err(stop) = self.step(along, step) {
+                return Ok((sensed, Some(stop)));
+            }
+            sensed.push(self.sensed());
+        }
+        Ok((sensed, None))
     }
 }

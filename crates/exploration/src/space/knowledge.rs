@@ -7,7 +7,7 @@ use crate::knowledge::{Knowledge, KnowledgeError, Measures};
 use contact_kinematics::Direction;
 use glam::DVec3;
 use shape_bounds::exact_hull::Intersection;
-use shape_bounds::noise::{CertainBounds, ContactNoise, NoiseError, NoisyContact, PoseNoise, quantile};
+use shape_bounds::noise::{CertainBounds, ContactNoise, NoiseError, NoisyContact, quantile};
 use shape_bounds::{BoundsError, ContactSample, IncrementalBounds, ShapeBounds};
 
 /// Standard deviations of every contact, the same along all axes, and the confidence that bounds are to hold at.
@@ -25,6 +25,8 @@ pub struct Noise {
 pub struct SpaceKnowledge {
     contacts: Vec<ContactSample>,
     noise: Option<Noise>,
+    /// Of each contact, under noise.
+    each: Vec<ContactNoise>,
     exact: IncrementalBounds,
     bounds: Option<ShapeBounds>,
 }
@@ -60,7 +62,8 @@ impl SpaceKnowledge {
     /// Of no contacts, which are to be exact.
     #[must_use]
     pub fn exact() -> Self {
-        Self { contacts: Vec::new(), noise: None, exact: IncrementalBounds::new(), bounds: None }
+        let exact = IncrementalBounds::new();
+        Self { contacts: Vec::new(), noise: None, each: Vec::new(), exact, bounds: None }
     }
 
     /// Of exact contacts that agree, bounded once; none of what bounds nothing.
@@ -102,16 +105,38 @@ impl SpaceKnowledge {
     fn of_noise(&self, noise: &Noise) -> Result<Option<ShapeBounds>, KnowledgeError> {
         let touch = self.contacts.len();
         let confidence = noise.confidence.of_touches(touch)?;
-        let each =
-            ContactNoise { pose: PoseNoise::NONE, ..ContactNoise::isotropic(noise.point, noise.normal) };
         // One list for each contact: means over neighbours in time are of nothing here.
-        let single: Vec<Vec<NoisyContact>> =
-            self.contacts.iter().map(|c| vec![NoisyContact { contact: *c, noise: each }]).collect();
-        match CertainBounds::from_curves_of_poses(&single, confidence, 0.0) {
+        let one = |(contact, noise): (&ContactSample, &ContactNoise)| {
+            vec![NoisyContact { contact: *contact, noise: *noise }]
+        };
+        let single: Vec<Vec<NoisyContact>> = self.contacts.iter().zip(&self.each).map(one).collect();
+        let exact_poses = self.each.iter().all(|noise| noise.pose.is_none());
+        let certain = if exact_poses {
+            CertainBounds::from_curves_of_poses(&single, confidence, 0.0)
+        } else {
+            CertainBounds::from_noisy_curves(&single, confidence)
+        };
+        match certain {
             Ok(certain) => Ok(certain.both()),
             Err(NoiseError::Bounds(BoundsError::TooFew { .. })) => Ok(None),
             Err(reason) => Err(KnowledgeError::Space { touch, reason }),
         }
+    }
+
+    /// Takes a contact with noise of its own, and of the pose that it was made in; `noise` counts for nothing where contacts are to be exact.
+    ///
+    /// # Errors
+    /// [`KnowledgeError`] where it contradicts those before; it is not taken then.
+    pub fn insert_with(&mut self, contact: ContactSample, noise: ContactNoise) -> Result<(), KnowledgeError> {
+        self.contacts.push(contact);
+        self.each.push(noise);
+        let taken = self.update(&contact);
+        if taken.is_err() {
+            self.contacts.pop();
+            self.each.pop();
+            self.start_over();
+        }
+        taken
     }
 
     /// The exact bounds without a contact that was refused after it was taken in: a contradiction may show only then.
@@ -157,13 +182,8 @@ impl Knowledge for SpaceKnowledge {
     type Point = DVec3;
 
     fn insert(&mut self, contact: ContactSample) -> Result<(), KnowledgeError> {
-        self.contacts.push(contact);
-        let taken = self.update(&contact);
-        if taken.is_err() {
-            self.contacts.pop();
-            self.start_over();
-        }
-        taken
+        let [point, normal] = self.noise.map_or([0.0; 2], |noise| [noise.point, noise.normal]);
+        self.insert_with(contact, ContactNoise::isotropic(point, normal))
     }
 
     fn touches(&self) -> usize {
