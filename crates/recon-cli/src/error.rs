@@ -249,7 +249,7 @@ pub(crate) enum CliError {
     #[error("the scene has no gravity, and palms do not hold an object without")]
     RolledWithoutGravity,
     #[error(
-        "half of the noise is stated: touches take --contact-noise and --normal-noise, palms that turn --contact-noise and --force-noise"
+        "half of the noise is stated: touches take --contact-noise and --normal-noise, palms that turn --contact-noise and --force-noise, parallel ones --contact-noise and --palm-noise"
     )]
     HalfNoise,
     #[error("the object does not lie between the palms")]
@@ -261,9 +261,13 @@ pub(crate) enum CliError {
     #[error("the object does not stay between the palms: give it more --friction")]
     ParallelPalms(#[source] recon::exploration::parallel::ParallelPalmsError),
     #[error(
-        "--force-noise is of the plane: between parallel palms contacts are felt in the object's own frame, with --contact-noise and --normal-noise"
+        "{option} is not of parallel palms: these are flat, so that normals are theirs, and where the object is follows from contacts and palm; use --contact-noise and --palm-noise"
     )]
-    ForcesInSpace,
+    NotBetween { option: &'static str },
+    #[error(
+        "--palm-noise is of parallel palms in space: palms that turn take --contact-noise and --force-noise"
+    )]
+    NotHinged,
     #[error(
         "--friction is of palms that do not wait: in the plane it takes --contact-noise and --force-noise as well"
     )]
@@ -380,7 +384,8 @@ impl CliError {
             | Self::Planner { .. }
             | Self::Parallel(_)
             | Self::ParallelPalms(_)
-            | Self::ForcesInSpace
+            | Self::NotBetween { .. }
+            | Self::NotHinged
             | Self::FrictionAtRest
             | Self::Confidence(_)
             | Self::Goal(_)

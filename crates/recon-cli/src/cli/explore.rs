@@ -78,7 +78,8 @@ sides, slowly and without friction, and the object lies where its centre of mass
 was sensed after each motion of the palms: nothing else is known of it, and bounds hold at the confidence for all these looks together.
 
 In space --rolling squeezes the object between two parallel palms with friction, of which the upper one moves: it rolls without slip, and is felt at both. Palms
-stop where the force leans by nine tenths of what friction holds. Contacts are in the object's own frame, exact or with --contact-noise and --normal-noise.
+stop where the force leans by nine tenths of what friction holds. Contacts are exact, in the object's own frame; or, with --contact-noise and --palm-noise, palms
+sense with noise, and where the object is is estimated from that. Pads are taken to keep it from spinning about their normal, but for --spin-noise.
 
 With --contour a round finger keeps in touch with the outline of the scene (`[outline]`, through points or with waves, or the object of a scene of the
 plane), once round. Where it does not get in it jumps, and that is told: between the two contacts nothing was felt. The hull of the outline is bounded, with
@@ -98,6 +99,7 @@ Examples:
   recon explore plane.toml --rolling --until gap=0.1 -o out
   recon explore plane.toml --rolling --until gap=0.1 --contact-noise 5e-5 --force-noise 2e-3 -o out
   recon explore scene.toml --rolling --friction 0.9 --until gap=0.3 -o out
+  recon explore scene.toml --rolling --until gap=0.3 --contact-noise 1e-3 --palm-noise 1e-4 -o out
   recon explore outline.toml --contour --finger 0.01 -o out
   recon explore body.toml --relief --finger 0.01 -o out
   recon explore scene.toml --until width=0.001@0,0,1 --json | jq .proof")]
@@ -137,6 +139,14 @@ pub(crate) struct ExploreArgs {
     /// contacts and forces, and nothing of it is taken as known
     #[arg(long, value_name = "N", requires_all = ["rolling", "contact_noise"], conflicts_with = "normal_noise", value_parser = positive)]
     pub(crate) force_noise: Option<f64>,
+    /// With --rolling in space and --contact-noise: standard deviation of the place of the upper palm per axis, m; where the object is is then
+    /// estimated from contacts and palm, and nothing of it is taken as known
+    #[arg(long, value_name = "M", requires_all = ["rolling", "contact_noise"], conflicts_with_all = ["normal_noise", "force_noise"], value_parser = not_negative)]
+    pub(crate) palm_noise: Option<f64>,
+    /// With --palm-noise: standard deviation of the turn about the line through both contacts that the pads let happen while the object rolls by 1 rad, rad; it
+    /// grows as the root of the turn [default: 0]
+    #[arg(long, value_name = "RAD", requires = "palm_noise", value_parser = not_negative)]
+    pub(crate) spin_noise: Option<f64>,
     /// With --rolling: coefficient of friction of both palms [default: in space 1; in the plane 0; with --force-noise the estimate is told
     /// that it is 0, and nothing of another one]
     #[arg(long, value_name = "MU", requires = "rolling", value_parser = not_negative)]
@@ -184,6 +194,17 @@ pub(crate) enum Until {
     Width(f64, Vec<f64>),
 }
 
+impl Until {
+    /// Whether both are of one quantity, however much of it is asked for.
+    pub(crate) fn is_of(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Gap(_), Self::Gap(_)) | (Self::Hausdorff(_), Self::Hausdorff(_)) => true,
+            (Self::Width(_, along), Self::Width(_, other)) => along == other,
+            _ => false,
+        }
+    }
+}
+
 /// Reads a goal.
 pub(crate) fn until(text: &str) -> Result<Until, String> {
     let wrong = || format!("`{text}` is no goal; write gap=0.1, hausdorff=0.01 or width=0.001@1,0,0");
@@ -209,6 +230,9 @@ mod tests {
         assert_eq!(until("gap=0.1"), Ok(Until::Gap(0.1)));
         assert_eq!(until("hausdorff=1e-3"), Ok(Until::Hausdorff(1e-3)));
         assert_eq!(until("width=0.5@0, 0,1"), Ok(Until::Width(0.5, vec![0.0, 0.0, 1.0])));
+        let of = |a: &str, b: &str| until(a).unwrap().is_of(&until(b).unwrap());
+        assert!(of("gap=0.1", "gap=0.2") && of("width=1@0,1", "width=2@0,1"));
+        assert!(!of("gap=0.1", "hausdorff=0.1") && !of("width=1@0,1", "width=1@1,0"));
         for wrong in
             ["", "gap", "gap=", "gap=nan", "gap=inf", "width=1", "width=1@1", "width=1@1,2,3,4", "size=1"]
         {

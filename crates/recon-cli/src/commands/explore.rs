@@ -10,10 +10,13 @@ use crate::progress::Progress;
 use glam::{DVec2, DVec3};
 use recon::contact_kinematics::planar::RadiusFunction;
 use recon::contact_kinematics::{Direction, SupportFunction};
-use recon::exploration::parallel::{ParallelError, ParallelWorkspace, SimulatedParallelPalms};
+use recon::exploration::parallel::{
+    EstimatedPalms, ParallelError, ParallelWorkspace, SimulatedParallelPalms,
+};
 use recon::exploration::rolling::{RollingBody, SensedError, SimulatedHands, SimulatedPalms, Workspace};
 use recon::exploration::{Heading, Motion, Source, planar, space};
 use recon::object_dynamics::planar::PlanarObject;
+use recon::observer::rolling::RollingNoise;
 use recon::shape_bounds::exact_hull::planar as flat;
 use recon_io::{FolderTarget, OutlineScene, PlanarBody, PlanarScene, Scene, SceneErrorKind, SurfaceScene};
 use serde_json::Value;
@@ -107,11 +110,10 @@ const RUBBER: f64 = 1.0;
 
 /// Between two parallel palms, of which the upper one moves.
 fn between(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Explored, CliError> {
-    if args.force_noise.is_some() {
-        return Err(CliError::ForcesInSpace);
-    }
-    if args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
-        return Err(CliError::HalfNoise);
+    for (given, option) in [(args.force_noise, "--force-noise"), (args.goal.normal_noise, "--normal-noise")] {
+        if given.is_some() {
+            return Err(CliError::NotBetween { option });
+        }
     }
     let nothing = || CliError::NothingToSimulate { path: args.scene.clone() };
     let body = scene.simulation.as_ref().ok_or_else(nothing)?.body()?;
@@ -122,12 +124,22 @@ fn between(args: &ExploreArgs, scene: &Scene, progress: &Progress) -> Result<Exp
     let workspace =
         ParallelWorkspace::for_size(args.width.unwrap_or(2.0 * mean), args.friction.unwrap_or(RUBBER));
     workspace.check().map_err(ParallelError::Workspace)?;
-    let [point, normal] = settings.noise.map_or([0.0; 2], |(noise, _)| noise);
     let support = |n: Direction| -> DVec3 { body.point(n) };
     let palms = SimulatedParallelPalms::new(support, workspace, Source::new(settings.seed).rotation());
-    let mut palms = palms.map_err(CliError::ParallelPalms)?.with_noise(point, normal, settings.seed);
+    let mut palms = palms.map_err(CliError::ParallelPalms)?;
     progress.step("moving the palm");
-    stroked(&title(args), until(args)?, &settings, workspace, &mut palms, |words| progress.say(words))
+    let (title, until, watch) = (title(args), until(args)?, |words: &str| progress.say(words));
+    match (args.goal.contact_noise, args.palm_noise) {
+        (Some(contact), Some(palm)) => {
+            let noise = RollingNoise { contact, palm, spin: args.spin_noise.unwrap_or(0.0) };
+            let settings = settings.estimated_between(noise, args.goal.confidence.unwrap_or(CONFIDENCE));
+            let palms = EstimatedPalms::new(palms.with_noise(noise, settings.seed), noise);
+            let mut palms = palms.map_err(ParallelError::Palms)?;
+            stroked(&title, until, &settings, workspace, &mut palms, watch)
+        }
+        (None, None) => stroked(&title, until, &settings, workspace, &mut palms, watch),
+        _ => Err(CliError::HalfNoise),
+    }
 }
 
 /// Where palms are at first, rad.
@@ -147,6 +159,9 @@ impl RollingBody for Rolled<'_> {
 }
 
 fn rolling(args: &ExploreArgs, scene: &PlanarScene, progress: &Progress) -> Result<Explored, CliError> {
+    if args.palm_noise.is_some() {
+        return Err(CliError::NotHinged);
+    }
     let body = Rolled(&scene.world.object().shape);
     let mut settings = Settings::new(&args.goal, &Value::Null, 2);
     settings.planner = args.goal.planner.unwrap_or(PlannerAs::PerSecond);

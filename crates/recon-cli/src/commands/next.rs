@@ -31,11 +31,15 @@ pub(crate) fn planned(
     if args.goal.contact_noise.is_some() != args.goal.normal_noise.is_some() {
         return Err(CliError::HalfNoise);
     }
+    // What is proven at a confidence is in the summary; of exact contacts it follows from them.
+    let same = until_of(earlier).is_some_and(|earlier| earlier.is_of(&until));
+    let stated = earlier["proof"]["at_most"].as_f64().filter(|_| same).unwrap_or(f64::INFINITY);
     match touches {
         Touches::Contacts { curves, .. } if earlier["schema"] == SummaryOf::Strokes.schema() => {
             let settings = Settings::new(&args.goal, earlier, 3);
             let placed = Placed::read(&contacts.with_file_name(STATE))?;
-            next_stroke(&curves.concat(), &placed, goal_of::<InSpace>(&until)?, &settings)
+            let stated = if placed.noise.is_some() { stated } else { f64::INFINITY };
+            next_stroke(&curves.concat(), &placed, goal_of::<InSpace>(&until)?, &settings, stated)
         }
         Touches::Contacts { curves, .. } => {
             let settings = Settings::new(&args.goal, earlier, 3);
@@ -44,9 +48,6 @@ pub(crate) fn planned(
         Touches::PlanarContacts { curves, .. } if earlier["schema"] == SummaryOf::Rolling.schema() => {
             let settings = Settings::new(&args.goal, earlier, 2);
             let state = State::read(&contacts.with_file_name(STATE))?;
-            // What is proven at a confidence is in the summary; of exact contacts it follows from them.
-            let same = until_of(earlier).as_ref() == Some(&until);
-            let stated = earlier["proof"]["at_most"].as_f64().filter(|_| same).unwrap_or(f64::INFINITY);
             let proven = settings.sensors.map(|_| stated);
             next_motion(&curves.concat(), &state, goal_of::<InPlane>(&until)?, &settings, proven)
         }

@@ -220,12 +220,27 @@ fn a_palm_rolls_an_object_in_space_until_the_gap_is_proven_or_friction_ends_it()
     let noise = ["--until", "gap=0.2", "--contact-noise", "1e-4"];
     for (arguments, says) in [
         (rolling(&noise), "half of the noise"),
-        (rolling(&[&noise[..], &["--force-noise", "1"]].concat()), "--normal-noise"),
+        (rolling(&[&noise[..], &["--force-noise", "1"]].concat()), "--force-noise is not"),
+        (rolling(&[&noise[..], &["--normal-noise", "1"]].concat()), "--normal-noise is not"),
+        (
+            vec![
+                "explore",
+                "plane.toml",
+                "--rolling",
+                "--until",
+                "gap=0.2",
+                "--contact-noise",
+                "1e-4",
+                "--palm-noise",
+                "1e-4",
+            ],
+            "in space",
+        ),
         (rolling(&["--until", "gap=0.2", "--friction", "0"]), "coefficient of friction is 0"),
         (rolling(&["--until", "gap=0.2", "--planner", "hausdorff"]), "use per-second"),
         (rolling(&["--until", "gap=0"]), "goal 0"),
         (
-            rolling(&["--until", "gap=1e-6", "--contact-noise", "1e-4", "--normal-noise", "1e-3"]),
+            rolling(&["--until", "gap=1e-6", "--contact-noise", "1e-4", "--palm-noise", "1e-4"]),
             "below what the noise",
         ),
     ] {
@@ -237,6 +252,27 @@ fn a_palm_rolls_an_object_in_space_until_the_gap_is_proven_or_friction_ends_it()
             run.stderr
         );
     }
+}
+
+/// Between parallel palms that sense with noise nothing is known of the object but what is estimated.
+#[test]
+fn parallel_palms_with_noisy_sensors_prove_a_gap_by_an_estimate() {
+    let scratch = scratch("explore-strokes-sensed");
+    let noise = ["--contact-noise", "2e-3", "--palm-noise", "2e-4", "--spin-noise", "1e-3"];
+    let rest = ["--friction", "2", "--until", "gap=0.45", "-o", "out", "--json"];
+    let made = json(&scratch, &[&["explore", "space.toml", "--rolling"], &noise[..], &rest].concat(), 0);
+    assert_eq!((&made["proof"]["reached"], &made["proof"]["confidence"]), (&true.into(), &0.95.into()));
+    assert_eq!(made["settings"]["palm_noise_m"], 2e-4);
+    let [lower, upper] =
+        ["lower_volume_m3", "upper_volume_m3"].map(|name| made["bounds"][name].as_f64().unwrap());
+    let truth = 4.0 / 3.0 * std::f64::consts::PI * 2.5 * 2.0;
+    assert!(lower < truth && truth < upper && upper - lower <= 0.45 * upper, "{lower} {truth} {upper}");
+    assert_eq!(scratch.run(&["check", "out"]).code, Some(0));
+    assert_eq!(json(&scratch, &["next", "out"], 0)["done"], true);
+    // Of a finer goal it is known what was proven of the other.
+    let next = json(&scratch, &["next", "out", "--until", "gap=0.2"], 0);
+    assert_eq!((&next["done"], &next["at_most"]), (&false.into(), &made["proof"]["at_most"]));
+    assert!(next["action"]["heading_rad"].is_number(), "{next}");
 }
 
 /// With noisy sensors nothing is known of the object but what is estimated, and the certificate is at a confidence.

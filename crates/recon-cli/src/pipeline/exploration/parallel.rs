@@ -8,6 +8,7 @@ use super::space::InSpace;
 use super::story::{Explored, proof, proven, sentence};
 use crate::cli::{PlannerAs, Until};
 use crate::error::{CliError, Outcome as Exit};
+use glam::{DMat3, DVec3};
 use recon::contact_kinematics::Direction;
 use recon::exploration::parallel::{
     LargestGap, NearestGap, ParallelError, ParallelPalms, ParallelPlanner, ParallelProposal, ParallelStep,
@@ -17,6 +18,7 @@ use recon::exploration::parallel::{
 use recon::exploration::space::SpaceKnowledge;
 use recon::exploration::{Goal, Knowledge, Outcome, Shortfall};
 use recon::shape_bounds::ContactSample;
+use recon::shape_bounds::noise::ContactNoise;
 use recon_io::{
     ExplorationPage, ExplorationWords, FigureCurve, FigurePanel, Level, SummaryOf, TouchRow, Verdict,
     brief_to, write_exploration_report,
@@ -78,6 +80,14 @@ impl Strokes {
         self.course.last().map_or(0.0, |of| of[0])
     }
 
+    /// What no contact is off by more than, in axes of the object: deviations of points per axis (m) and of normals (rad); none of exact ones.
+    fn noise(&self) -> Option<[f64; 2]> {
+        let all =
+            self.made.iter().filter_map(|made| Some((made.last.reading.contacts, made.last.reading.noise?)));
+        let each = all.flat_map(|(contacts, noise)| [0, 1].map(|i| off(contacts[i].point, &noise[i])));
+        each.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
+    }
+
     fn count(&self) -> usize {
         self.made.len().saturating_sub(1)
     }
@@ -101,6 +111,14 @@ impl Strokes {
             panel("Bounds over the way", "size in m³", vec![curve("lower", 2), curve("upper", 3)]),
         ]
     }
+}
+
+/// Deviations of a contact at `point` with its pose, no less than along any axis.
+fn off(point: DVec3, noise: &ContactNoise) -> [f64; 2] {
+    let trace = |m: DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
+    let turn = trace(noise.pose.rotation);
+    let place = trace(noise.point) + 2.0 * (trace(noise.pose.translation) + point.length_squared() * turn);
+    [place.sqrt(), noise.normal.hypot(turn.sqrt())]
 }
 
 impl Made {
@@ -220,7 +238,8 @@ pub(crate) fn stroked(
     let mut files = vec![InSpace::contacts_file(&known)?];
     if let Some(made) = strokes.made.last() {
         let (hold, stroke) = (made.last.reading.hold, made.last.stroke);
-        files.push(state_file(&Placed { hold, workspace, stroke }));
+        let noise = strokes.noise();
+        files.push(state_file(&Placed { hold, workspace, stroke, noise }));
     }
     files.extend(drawn.files()?);
     let mut report = Vec::new();
@@ -292,20 +311,27 @@ fn why_short(shortfall: &Shortfall) -> String {
     }
 }
 
-/// The next stroke after `contacts` with the object as in `placed`, as `recon next` prints it.
+/// The next stroke after `contacts` with the object as in `placed`, as `recon next` prints it; `stated` is what was proven of the goal before.
 pub(crate) fn next_stroke(
     contacts: &[ContactSample],
     placed: &Placed,
     goal: Goal<Direction>,
     settings: &Settings,
+    stated: f64,
 ) -> Result<(Value, Exit), CliError> {
+    let mut settings = *settings;
+    if let Some((noise, confidence)) = placed.noise.zip(settings.confidence) {
+        settings.noise = Some((noise, confidence));
+    }
+    let settings = &settings;
     goal.check().map_err(ParallelError::Goal)?;
     placed.workspace.check().map_err(ParallelError::Workspace)?;
     let mut known = InSpace::nothing(settings)?;
     for contact in contacts {
         known.insert(*contact).map_err(ParallelError::Knowledge)?;
     }
-    let left = known.progress(&goal);
+    // What was proven stays so, with the noise that each contact had.
+    let left = known.progress(&goal).min(stated);
     let done = left <= goal.value();
     let mut told = json!({
         "done": done,

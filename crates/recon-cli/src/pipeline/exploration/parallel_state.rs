@@ -15,7 +15,12 @@ pub(crate) struct Placed {
     pub(crate) workspace: ParallelWorkspace,
     /// Strokes so far.
     pub(crate) stroke: usize,
+    /// Standard deviations of a contact per axis (m) and of its normal about each tangent axis (rad), in axes of the object and no less than those of any; none of exact
+    /// contacts.
+    pub(crate) noise: Option<[f64; 2]>,
 }
+
+const NOISE: [&str; 2] = ["contact_off_m", "normal_off_rad"];
 
 /// Quaternions shorter than this are none.
 const NO_TURN: f64 = 1e-6;
@@ -47,21 +52,27 @@ impl Placed {
             number("width_m", &state["width_m"])?,
             number("friction", &state["friction"])?,
         );
+        let noise = NOISE.map(|key| state.get(key).map(|value| number(key, value)).transpose());
+        let [point, normal] = noise;
         let stroke =
             state["stroke"].as_u64().ok_or_else(|| wrong("`stroke` is no number of strokes".to_owned()))?;
-        Ok(Self { hold, workspace, stroke: stroke as usize })
+        let noise = point?.zip(normal?).map(|(point, normal)| [point, normal]);
+        Ok(Self { hold, workspace, stroke: stroke as usize, noise })
     }
 }
 
 /// As a file.
 pub(super) fn state_file(placed: &Placed) -> Extra {
-    let Placed { hold, workspace, stroke } = placed;
-    let state = json!({
+    let Placed { hold, workspace, stroke, noise } = placed;
+    let mut state = json!({
         "orientation_xyzw": hold.R_WO.to_array(),
         "pads_m": hold.pads.map(|pad| pad.to_array()),
         "friction": workspace.friction,
         "width_m": workspace.size,
         "stroke": stroke,
     });
+    for (key, value) in NOISE.iter().zip(noise.iter().flatten()) {
+        state[*key] = (*value).into();
+    }
     (STATE.to_owned(), format!("{state:#}\n").into_bytes())
 }

@@ -5,6 +5,7 @@ use crate::cli::{GoalArgs, PlannerAs, Until, until};
 use crate::error::CliError;
 use clap::ValueEnum;
 use recon::exploration::{Confidence, Goal, Heading, Knowledge, Spending};
+use recon::observer::rolling::RollingNoise;
 use serde_json::{Value, json};
 
 pub(crate) const CONFIDENCE: f64 = 0.95;
@@ -38,6 +39,10 @@ pub(crate) struct Settings {
     pub(crate) noise: Noise,
     /// Standard deviations of points along palms (m) and of forces (N), and the confidence, where palms turn and the motion is estimated.
     pub(crate) sensors: Option<([f64; 2], f64)>,
+    /// Of bounds, where noise is stated.
+    pub(crate) confidence: Option<f64>,
+    /// Noise of parallel palms, where the pose is estimated from what they sense.
+    pub(crate) between: Option<RollingNoise>,
 }
 
 impl Settings {
@@ -48,7 +53,8 @@ impl Settings {
         let planner = was["planner"].as_str().and_then(|name| PlannerAs::from_str(name, false).ok());
         let given = args.contact_noise.zip(args.normal_noise);
         let noise = given.or_else(|| number("contact_noise_m").zip(number("normal_noise_rad")));
-        let confidence = args.confidence.or_else(|| number("confidence")).unwrap_or(CONFIDENCE);
+        let stated = args.confidence.or_else(|| number("confidence"));
+        let confidence = stated.unwrap_or(CONFIDENCE);
         let always = BUDGETS[usize::from(dimension == 3)];
         let budget = args.budget.map(u64::from).or_else(|| was["budget"].as_u64());
         Self {
@@ -59,7 +65,16 @@ impl Settings {
             sensors: number("contact_noise_m")
                 .zip(number("force_noise_n"))
                 .map(|(a, b)| ([a, b], confidence)),
+            confidence: stated,
+            between: None,
         }
+    }
+
+    /// Of parallel palms that sense with noise. Contacts are off by no less than the place of the palm; each states its own noise.
+    pub(crate) fn estimated_between(mut self, noise: RollingNoise, confidence: f64) -> Self {
+        self.noise = Some(([noise.palm, 0.0], confidence));
+        self.between = Some(noise);
+        self
     }
 
     /// As [`Settings::new`] reads them.
@@ -69,7 +84,15 @@ impl Settings {
             "seed": self.seed,
             "budget": self.budget,
         });
-        add_noise(self.noise, &mut figures);
+        match (self.between, self.noise) {
+            (Some(between), Some((_, confidence))) => {
+                figures["contact_noise_m"] = between.contact.into();
+                figures["palm_noise_m"] = between.palm.into();
+                figures["spin_noise_rad"] = between.spin.into();
+                figures["confidence"] = confidence.into();
+            }
+            _ => add_noise(self.noise, &mut figures),
+        }
         if let Some(([point, force], confidence)) = self.sensors {
             figures["contact_noise_m"] = point.into();
             figures["force_noise_n"] = force.into();
