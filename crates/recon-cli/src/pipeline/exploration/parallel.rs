@@ -274,6 +274,10 @@ fn page(
     if let Some((level, _)) = certificate.confidence {
         facts.push(("Confidence", brief_to(4, 100.0 * level), "%"));
     }
+    if let Some([place, turn]) = strokes.noise() {
+        facts.push(("Contacts off by", brief_to(2, place), "m at most (1 deviation)"));
+        facts.push(("Normals off by", brief_to(2, turn), "rad at most (1 deviation)"));
+    }
     let touches = strokes.made.iter().map(Made::row).collect();
     let mut panels = strokes.panels(&certificate.goal);
     // What was seen before both bounds were closed has other pictures.
