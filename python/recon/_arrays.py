@@ -24,12 +24,14 @@ def array(name: str, values: ArrayLike, shape: tuple[int | str, ...]) -> Array:
 
 
 def numbers(name: str, values: ArrayLike) -> Array:
-    """`values` as numbers, which neither text nor complex numbers are."""
+    """`values` as numbers, which neither text, truth values nor complex numbers are; what is masked was not measured."""
     try:
         made = np.asarray(values)
+        if isinstance(values, np.ma.MaskedArray) and made.dtype.kind in "fiu":
+            made = values.astype(np.float64).filled(np.nan)
     except ValueError as error:
         raise InputError(f"{name} is no array ({error}); give rows of one length") from error
-    if made.dtype.kind not in "fiub":
+    if made.dtype.kind not in "fiu":
         if made.dtype.kind != "O":
             raise InputError(f"{name} holds {made.dtype} values; give real numbers")
         try:
@@ -48,19 +50,20 @@ def same_length(first: str, length: int, **arrays: Array | None) -> None:
 
 def columns_of(frame: Any) -> tuple[list[str], list[Array]]:
     """Names and columns of a data frame (pandas, polars), a structured array, or a dictionary."""
+    names: list[Any]
     if isinstance(frame, np.ndarray) and frame.dtype.names:
         names = list(frame.dtype.names)
     elif isinstance(frame, Mapping):
-        names = [str(name) for name in frame]
+        names = list(frame)
     elif hasattr(frame, "columns") and hasattr(frame, "__getitem__"):
-        names = [str(name) for name in frame.columns]
+        names = list(frame.columns)
     elif hasattr(frame, "column_names") and hasattr(frame, "column"):  # pyarrow
         return list(frame.column_names), [column(name, frame.column(name).to_numpy()) for name in frame.column_names]
     else:
         raise InputError(
             f"a value of type {type(frame).__name__} is no table of named columns; give a data frame, a dictionary of arrays, a path or a recon.Log"
         )
-    return names, [column(name, frame[name]) for name in names]
+    return [str(name) for name in names], [column(str(name), frame[name]) for name in names]
 
 
 def column(name: str, values: Any) -> Array:

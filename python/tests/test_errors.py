@@ -42,6 +42,8 @@ def test_values_of_a_log(log: recon.Log) -> None:
     refused(lambda t: t | {"f_1": np.zeros((len(t["t"]), 2))}, "f_1", "shape", "(n,)")
     refused(lambda t: t | {"f_1": ["one"] + [1.0] * 1500}, "f_1")
     refused(lambda t: {"f_1": t["f_1"]}, "column `t` is missing")
+    refused(lambda t: t | {"f_1": t["f_1"] > 0.0}, "f_1", "bool")
+    refused(lambda t: t | {3: t["f_1"]} | {"f_1": np.ma.masked_array(t["f_1"], mask=t["t"] == t["t"][9])}, "row 9", "f_1", "nan")
 
 
 def test_shapes_of_arrays() -> None:

@@ -49,6 +49,8 @@ pub struct Size {
     pub volume: f64,
     /// m^2.
     pub area: f64,
+    /// What rounding may make of the volume, m^3: of a needle or a sheet the products that it is a sum of are far larger than it.
+    pub rounding: f64,
 }
 
 /// A pair of triangles at an edge.
@@ -154,12 +156,15 @@ impl Surface {
     #[must_use]
     pub fn size(&self) -> Size {
         let about = self.corners.first().copied().unwrap_or_default();
-        let mut size = Size { volume: 0.0, area: 0.0 };
+        let mut size = Size { volume: 0.0, area: 0.0, rounding: 0.0 };
         for triangle in 0..self.triangles.len() {
             let [a, b, c] = self.at(triangle).map(|corner| corner - about);
             size.volume += a.dot(b.cross(c)) / 6.0;
             size.area += (b - a).cross(c - a).length() / 2.0;
         }
+        // Of sums about any point of it.
+        let extent = self.corners.iter().map(|corner| corner.distance(about)).fold(0.0, f64::max);
+        size.rounding = self.triangles.len() as f64 * f64::EPSILON * extent.powi(3);
         size
     }
 

@@ -53,6 +53,8 @@ pub(crate) enum CliError {
     NoLogs { path: PathBuf },
     #[error("{} has the name of another log but for its ending, and both would be written into one folder: rename one", path.display())]
     SameName { path: PathBuf },
+    #[error("{} cannot have a folder of results: without its ending its name is that of another file there, or of no folder of its own; rename it", path.display())]
+    LogName { path: PathBuf },
     #[error("`{name}` is no format; these are: {names}")]
     NoFormat { name: String, names: String },
     #[error(
@@ -320,6 +322,7 @@ impl CliError {
             | Self::NoLogs { .. }
             | Self::LogNeedsScene
             | Self::SameName { .. }
+            | Self::LogName { .. }
             | Self::BagFollowed { .. }
             | Self::Scene(_)
             | Self::Touches(_)

@@ -35,7 +35,7 @@ pub enum BoundsError {
     },
     /// A contact point lies beyond the tangent plane of another, by more than rounding.
     #[error(
-        "contact {} (from 0) lies {:e} m beyond the tangent plane of contact {}, which no convex body allows: a contact is wrong or its normal points inwards, \
+        "contact {} (from 0) lies {:e} m beyond the tangent plane of contact {} (from 0), which no convex body allows: a contact is wrong or its normal points inwards, \
          contacts are noisy (state or estimate their noise), or the body is concave (take it for that)",
         .0.contact, .0.excess, .0.plane
     )]

@@ -18,7 +18,7 @@ pub enum DirectionError {
         vector: DVec2,
     },
     /// The vector has no direction.
-    #[error("direction vector has length zero")]
+    #[error("vector has length zero")]
     Zero,
     /// The vector is further from unit length than stated.
     #[error("vector has length {length}, further from 1 than {tolerance}; normalise it or mend its units")]

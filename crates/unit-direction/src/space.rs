@@ -17,7 +17,7 @@ pub enum DirectionError {
         vector: DVec3,
     },
     /// The vector has no direction.
-    #[error("direction vector has length {length}; it must be above zero")]
+    #[error("vector has length {length}; it must be above zero")]
     Zero {
         /// The length as computed.
         length: f64,

@@ -21,7 +21,7 @@ const KNOWN: f64 = 1e-4;
 const CONTRADICTED: f64 = 9.2;
 
 /// How often conditions are taken for off by what is not known of the spin, and the share of their deviation from which on a change of that counts.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 const BLURS: f64 = 0.3;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
@@ -87,28 +87,51 @@ pub(super) fn body(of: &Body, mass: f64, root: f64) -> (Body, OfBody) {
 /// `(z^2 + var z) var e`.
 pub(super) fn blurred(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
     let (mut solved, mut before) = (solved, 0);
+    let mut unknown = vec![usual_spin(problem, &solved); problem.nodes.len()];
     for _ in 0..ROUNDS {
-        let (blurred, change) = blur(problem, &solved)?;
+        let (blurred, change) = blur(problem, &solved, &unknown);
         if change < BLURS {
             break;
         }
         problem.blurred = blurred;
         before += solved.iterations;
         solved = fine(problem, solved.unknowns)?;
+        unknown = spins_unknown(problem, &solved)?;
     }
     solved.iterations += before;
     Some(solved)
 }
 
+/// Root mean square of the spins against palms, rad/s.
+fn usual_spin(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
+    let Solved { unknowns, .. } = solved;
+    let (mut squares, mut count) = (0.0, 0.0_f64);
+    for (&k, motion) in problem.nodes.iter().zip(&unknowns.motions) {
+        let spin = unknowns.body.spin(motion.q, motion.L).y;
+        for contact in &problem.record.contacts[k] {
+            squares += (spin - contact.W.y).powi(2);
+            count += 1.0;
+        }
+    }
+    (squares / count.max(1.0)).sqrt()
+}
+
+/// Deviations of the spin at the nodes, rad/s.
+fn spins_unknown(problem: &Problem, solved: &Solved<CONSTANTS>) -> Option<Vec<f64>> {
+    let covariances = solved.covariances(problem)?;
+    let body = &solved.unknowns.body;
+    let motions = solved.unknowns.motions.iter().enumerate();
+    Some(motions.map(|(j, motion)| deviations(motion, body, j, &covariances)[2].y).collect())
+}
+
 /// What conditions are off by for it at each sample of the record, m/s, and by how much that is another number than before, over the deviation that
 /// one has: the largest.
-fn blur(problem: &Problem, solved: &Solved<CONSTANTS>) -> Option<(Vec<f64>, f64)> {
-    let covariances = solved.covariances(problem)?;
+fn blur(problem: &Problem, solved: &Solved<CONSTANTS>, unknown: &[f64]) -> (Vec<f64>, f64) {
     let body = &solved.unknowns.body;
     let (mut all, mut change) = (vec![0.0; problem.record.times.len()], 0.0);
     let motions = problem.at_samples(&solved.unknowns);
     for (j, (&from, motion)) in problem.nodes.iter().zip(&motions).enumerate() {
-        let unknown = deviations(motion, body, j, &covariances)[2].y;
+        let unknown = unknown[j];
         let spin = body.spin(motion.q, motion.L).y;
         let end = problem.nodes.get(j + 1).copied().unwrap_or(from + 1);
         for (k, blurred) in all.iter_mut().enumerate().take(end).skip(from) {
@@ -122,7 +145,7 @@ fn blur(problem: &Problem, solved: &Solved<CONSTANTS>) -> Option<(Vec<f64>, f64)
             }
         }
     }
-    Some((all, change))
+    (all, change)
 }
 
 /// The motion of a known body, and why it cannot be that one; `problem` is left as it was solved.

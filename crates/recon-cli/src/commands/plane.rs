@@ -32,7 +32,7 @@ pub(super) fn describe(made: &PlanarBounds, count: usize) -> String {
         let _ = writeln!(text, "  upper bound            {} m^2", brief(upper));
         let _ = writeln!(text, "  lower / upper          {}", brief_to(4, lower / upper));
     }
-    if let Some(gap) = made.largest_gap() {
+    if let Some(gap) = made.largest_gap {
         let _ = writeln!(text, "  gap, at most           {} m", brief(gap));
     }
     if made.about["fit"].is_object() {

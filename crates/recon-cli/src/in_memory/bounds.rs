@@ -120,7 +120,7 @@ impl Bounded {
                 upper: &made.outlines[1],
                 fitted: &made.fitted,
                 areas: made.areas,
-                largest_gap: made.largest_gap(),
+                largest_gap: made.largest_gap,
             }),
         }
     }

@@ -69,7 +69,7 @@ pub(crate) fn plane_bounds_page(
         title: title.to_owned(),
         verdict: verdict(&made.about, what, sizes, false),
         warnings: made.warnings.clone(),
-        facts: facts(sizes, "m²", made.largest_gap(), &made.about),
+        facts: facts(sizes, "m²", made.largest_gap, &made.about),
         heading: "Bounds on the outline",
         panels,
         caption: IN_PLANE.to_owned(),

@@ -15,7 +15,6 @@ use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
 use recon::observer::reliability::Reliability;
-use recon::shape_bounds::planar::noise::NoiseError;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
     explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
@@ -95,10 +94,6 @@ fn bounded(
         }
         Ok(None) => {
             (None, vec!["There are no bounds on the outline: no sample's motion is relied on.".to_owned()])
-        }
-        Err(CliError::PlanarNoisyBounds(NoiseError::NoUpperBound { .. })) => {
-            let why = "There are no bounds on the outline: the contacts leave it open on some side, or the motion is known too badly.";
-            (None, vec![why.to_owned()])
         }
         Err(error) => {
             let why = error.source().map_or_else(|| error.to_string(), ToString::to_string);

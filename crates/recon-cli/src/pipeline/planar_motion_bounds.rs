@@ -1,11 +1,10 @@
 //! Bounds on an outline from a motion that was estimated in the plane.
 
-use super::plane::{PlanarBounds, drawn};
+use super::plane::{PlanarBounds, noisy};
 use crate::error::CliError;
 use recon::exploration::rolling::noisy_curves;
 use recon::object_dynamics::planar::ContactLog;
 use recon::observer::planar::PlaneEstimate;
-use recon::shape_bounds::planar::ShapeBounds;
 use serde_json::json;
 
 /// Bounds that hold at `confidence` for the noise of the contacts (`contact_noise`, m) and for the errors of the poses, in the axes of the
@@ -23,9 +22,8 @@ pub(super) fn motion_bounds(
     if curves.iter().all(Vec::is_empty) {
         return Ok(None);
     }
-    let bounds = ShapeBounds::from_noisy_curves(&curves, confidence)?;
     let about = json!({ "confidence": confidence, "noise": "of the contacts and of the motion" });
-    let mut made = drawn(&bounds, about);
+    let mut made = noisy(&curves, confidence, about)?;
     made.points = curves.iter().flatten().map(|c| c.contact.point).collect();
     Ok(Some(made))
 }

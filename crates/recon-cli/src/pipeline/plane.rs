@@ -8,11 +8,11 @@ use crate::cli::FitAs;
 use crate::error::CliError;
 use glam::DVec2;
 use recon::contact_kinematics::planar::RadiusBounds;
-use recon::shape_bounds::exact_hull::planar::{Direction, Intersection};
+use recon::shape_bounds::exact_hull::planar::{Direction, Hull, Intersection};
 use recon::shape_bounds::planar::curvature::CurvatureBounds;
 use recon::shape_bounds::planar::noise::{
-    ContactNoise, NoisyContact, correlated_noise, estimate_noise, independence_is_tested,
-    with_noise_as_found, without_outliers,
+    ContactNoise, NoiseError, NoisyContact, certain_lower_bound, correlated_noise, estimate_noise,
+    independence_is_tested, with_noise_as_found, without_outliers,
 };
 use recon::shape_bounds::planar::{ContactSample, ShapeBounds};
 use recon_io::{FigureCurve, FigurePanel, outline_stands_out};
@@ -48,6 +48,10 @@ pub(crate) struct PlanarBounds {
     pub(crate) areas: [f64; 2],
     /// Direction of the normal (rad) and how far the bounds are apart there (m).
     pub(crate) gaps: Vec<[f64; 2]>,
+    /// Their Hausdorff distance, or somewhat more, m; `None` where a side is open.
+    pub(crate) largest_gap: Option<f64>,
+    /// Where a touch tells most: the corner of the upper bound that is farthest from the lower one.
+    next: Option<DVec2>,
     /// How far the lower bound stands out of the upper one, m: for exact contacts at most rounding.
     pub(crate) contradiction: f64,
     /// What the reader must know.
@@ -71,7 +75,7 @@ impl PlanarBounds {
             "lower_area_m2": lower,
             "upper_area_m2": upper,
             "lower_over_upper": lower / upper,
-            "largest_gap_m": self.largest_gap(),
+            "largest_gap_m": self.largest_gap,
             "contradiction_m": self.contradiction,
         })
     }
@@ -99,7 +103,7 @@ impl PlanarBounds {
         };
         let mut curves = vec![closed("lower bound", lower), closed("upper bound", upper), contacts];
         curves.push(closed("fit", &self.fitted));
-        curves.extend(self.next().map(|at| touch_next(at, upper)));
+        curves.extend(self.next.map(|at| touch_next(at, upper)));
         curves.retain(|curve| !curve.points.is_empty());
         FigurePanel {
             title: "Bounds".to_owned(),
@@ -108,18 +112,6 @@ impl PlanarBounds {
             curves,
             ..FigurePanel::default()
         }
-    }
-
-    /// Where a touch tells most: the corner of the upper bound that lies farthest in the direction in which the bounds are farthest apart.
-    fn next(&self) -> Option<DVec2> {
-        let [angle, _] = *self.gaps.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
-        let n = DVec2::from_angle(angle);
-        self.outlines[1].iter().copied().max_by(|a, b| n.dot(*a).total_cmp(&n.dot(*b)))
-    }
-
-    /// The Hausdorff distance of the bounds to the resolution of the directions, m; `None` where a side is open.
-    pub(crate) fn largest_gap(&self) -> Option<f64> {
-        self.gaps.iter().map(|g| g[1]).reduce(f64::max)
     }
 }
 
@@ -133,7 +125,7 @@ pub(crate) fn planar_bounds(
         (Some(radii), _) => (relative_noise(&all), sharp(&all, radii)?),
         (None, Some((noise, confidence))) => {
             let Cleaned { kept, warnings, about } = cleaned(curves, noise, confidence)?;
-            let mut made = drawn(&ShapeBounds::from_noisy_curves(&kept, confidence)?, about);
+            let mut made = noisy(&kept, confidence, about)?;
             made.warnings.extend(warnings);
             (kept.concat(), made)
         }
@@ -205,8 +197,15 @@ fn gaps(support: impl Fn(Direction) -> (f64, f64)) -> Vec<[f64; 2]> {
     if all.iter().all(|g| g[1].is_finite()) { all } else { Vec::new() }
 }
 
+/// Of `upper` what lies farthest in the direction in which the bounds are farthest apart.
+fn next(gaps: &[[f64; 2]], upper: &[DVec2]) -> Option<DVec2> {
+    let [angle, _] = *gaps.iter().max_by(|a, b| a[1].total_cmp(&b[1]))?;
+    let n = DVec2::from_angle(angle);
+    upper.iter().copied().max_by(|a, b| n.dot(*a).total_cmp(&n.dot(*b)))
+}
+
 /// Bounds as they are drawn.
-pub(super) fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
+fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
     let lower = bounds.lower().polygon().map(|p| p.shape().vertices().to_vec());
     let upper = bounds.upper().bounded().map(|r| r.shape().vertices().to_vec());
     let mut warnings = Vec::new();
@@ -219,6 +218,7 @@ pub(super) fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
         );
     }
     let outlines = [lower, upper].map(Option::unwrap_or_default);
+    let largest = bounds.largest_gap();
     PlanarBounds {
         points: Vec::new(),
         contradiction: outline_stands_out(&outlines[0], &outlines[1]),
@@ -226,7 +226,43 @@ pub(super) fn drawn(bounds: &ShapeBounds, about: Value) -> PlanarBounds {
         fitted: Vec::new(),
         areas: [bounds.lower_area(), bounds.upper_area()],
         gaps: gaps(|n| bounds.support(n)),
+        largest_gap: bounds.upper().bounded().map(|_| largest.map_or(0.0, |gap| gap.distance)),
+        next: largest.map(|gap| gap.outer),
         warnings,
+        about,
+    }
+}
+
+/// Bounds that hold at `confidence`, or the lower one alone.
+pub(super) fn noisy(
+    curves: &[Vec<NoisyContact>],
+    confidence: f64,
+    about: Value,
+) -> Result<PlanarBounds, NoiseError> {
+    match ShapeBounds::from_noisy_curves(curves, confidence) {
+        Ok(bounds) => Ok(drawn(&bounds, about)),
+        Err(NoiseError::NoUpperBound { .. }) => Ok(open(&certain_lower_bound(curves, confidence)?, about)),
+        Err(error) => Err(error),
+    }
+}
+
+/// The lower bound alone, where nothing finite is certain to be around the object.
+fn open(lower: &Hull, about: Value) -> PlanarBounds {
+    let outline = lower.polygon().map(|p| p.shape().vertices().to_vec()).unwrap_or_default();
+    let area = lower.polygon().map_or(0.0, |polygon| polygon.shape().area());
+    PlanarBounds {
+        points: Vec::new(),
+        contradiction: 0.0,
+        outlines: [outline, Vec::new()],
+        fitted: Vec::new(),
+        areas: [area, f64::INFINITY],
+        gaps: Vec::new(),
+        largest_gap: None,
+        next: None,
+        warnings: vec![
+            "Nothing finite is certain to contain the object: the contacts leave a side of it open, or their normals are too uncertain. There is no upper bound."
+                .to_owned(),
+        ],
         about,
     }
 }
@@ -238,13 +274,16 @@ fn sharp(contacts: &[ContactSample], radii: RadiusBounds) -> Result<PlanarBounds
     let (low, high) =
         outlines[1].iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
     let height = (radii.max * (1.0 - (STEP / 2.0).cos())).min((high - low).length() * STEP / 8.0);
+    let gaps = gaps(|n| bounds.support(n));
     Ok(PlanarBounds {
         points: Vec::new(),
         contradiction: 0.0,
-        outlines,
         fitted: Vec::new(),
         areas: [bounds.lower().area(), bounds.upper().area()],
-        gaps: gaps(|n| bounds.support(n)),
+        next: next(&gaps, &outlines[1]),
+        gaps,
+        largest_gap: Some(bounds.largest_gap()),
+        outlines,
         warnings: Vec::new(),
         about: json!({ "noise": "none", "radii_of_curvature_m": [radii.min, radii.max], "outline_tolerance_m": height }),
     })

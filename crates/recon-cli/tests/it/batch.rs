@@ -109,6 +109,18 @@ fn what_is_done_is_kept_and_what_has_changed_is_done_again() {
     assert_eq!(batch(&scratch, &["--identify"]).1["done_before"], 0);
 }
 
+/// Before any work: two dots as a name would be the folder above, and the table has the name of a folder then.
+#[test]
+fn a_log_whose_name_is_that_of_something_else_is_named() {
+    for name in ["...csv", "..csv", "results.csv.csv", "index.html.mcap"] {
+        let scratch = logs("batch-named");
+        scratch.write(&format!("logs/{name}"), &scratch.read("logs/slow.csv"));
+        let run = scratch.run(&["batch", "logs", "--scene", "scene.toml", "-o", "out"]);
+        assert!(run.code == Some(3) && run.stderr.contains(name), "{:?} {}", run.code, run.stderr);
+        assert!(!scratch.path().join("out").exists());
+    }
+}
+
 /// Killed without a chance to tidy up, at whatever it was: what is whole is kept, the rest is done, and nothing else stays.
 #[test]
 fn killed_in_the_middle_it_goes_on_to_the_same_table() {

@@ -315,3 +315,132 @@ fn flat_sides_touched_many_times_give_a_box() {
         assert!(lower < volume && (upper / volume - 1.0).abs() < 1e-6, "{spread}: {lower} {upper}");
     }
 }
+
+/// Contacts of an ellipse, as rows.
+fn ellipse(axes: [f64; 2], angles: impl Iterator<Item = f64>) -> String {
+    let mut text = String::from("x,y,nx,ny\n");
+    for angle in angles {
+        let (s, c) = angle.sin_cos();
+        let long = (axes[0] * c).hypot(axes[1] * s);
+        let (x, y) = (axes[0] * axes[0] * c / long, axes[1] * axes[1] * s / long);
+        writeln!(text, "{x:?},{y:?},{c:?},{s:?}").unwrap();
+    }
+    text
+}
+
+/// Corners of a file, m.
+fn corners(scratch: &Scratch, file: &str) -> Vec<[f64; 2]> {
+    let number = |word: &str| word.parse::<f64>().unwrap();
+    let row = |line: &str| line.split_once(',').map(|(x, y)| [number(x), number(y)]).unwrap();
+    scratch.read(file).lines().skip(1).map(row).collect()
+}
+
+/// Of a flat ellipse bounds are farthest apart between any two of a few hundred directions. Oracle: distances from corners to sides, one by one.
+#[test]
+fn the_largest_gap_in_the_plane_is_that_of_the_outlines() {
+    let scratch = Scratch::new("largest-gap");
+    let even = (0..200).map(|k| TAU * f64::from(k) / 200.0);
+    scratch.write("flat.csv", &ellipse([1.0, 0.01], even));
+    let made = bounds(&scratch, &["flat.csv", "-o", "out"]);
+    let [lower, upper] = ["out/lower_bound.csv", "out/upper_bound.csv"].map(|file| corners(&scratch, file));
+    let to_side = |p: [f64; 2], k: usize| {
+        let (a, b) = (lower[k], lower[(k + 1) % lower.len()]);
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let t = ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / (along[0].powi(2) + along[1].powi(2));
+        let t = t.clamp(0.0, 1.0);
+        (a[0] + t * along[0] - p[0]).hypot(a[1] + t * along[1] - p[1])
+    };
+    let nearest = |p: &[f64; 2]| (0..lower.len()).map(|k| to_side(*p, k)).fold(f64::INFINITY, f64::min);
+    let largest = upper.iter().map(nearest).fold(0.0, f64::max);
+    let told = made["bounds"]["largest_gap_m"].as_f64().unwrap();
+    assert!((told - largest).abs() < 1e-12, "{told} {largest}");
+}
+
+/// What is drawn of an upper bound of arcs is around it: a circle touched four times is in the outline.
+#[test]
+fn an_outline_of_arcs_is_around_the_body() {
+    let scratch = Scratch::new("arcs");
+    scratch.write("circle.csv", &ellipse([1.0, 1.0], (0..4).map(|k| TAU * f64::from(k) / 4.0)));
+    for [min, max] in [["0", "1000"], ["0.01", "100"], ["0.9", "1.1"], ["1", "1"]] {
+        bounds(&scratch, &["circle.csv", "--rho-min", min, "--rho-max", max, "-o", "out"]);
+        let upper = corners(&scratch, "out/upper_bound.csv");
+        let inside = (0..upper.len()).all(|k| {
+            let ([ax, ay], [bx, by]) = (upper[k], upper[(k + 1) % upper.len()]);
+            let length = (bx - ax).hypot(by - ay);
+            // Corners where two arcs meet stand there twice.
+            length < 1e-9 || (ax * by - ay * bx) / length > 1.0 - 1e-12
+        });
+        assert!(inside, "{min} {max}");
+    }
+}
+
+#[test]
+fn noisy_contacts_that_leave_a_side_open_have_a_lower_bound() {
+    let scratch = Scratch::new("open-side");
+    scratch.write("arc.csv", &ellipse([0.05, 0.03], (0..60).map(|k| 2.2 * f64::from(k) / 60.0)));
+    let run = scratch.run(&[
+        "bounds",
+        "arc.csv",
+        "--contact-noise",
+        "1e-5",
+        "--normal-noise",
+        "1e-3",
+        "--json",
+        "-o",
+        "out",
+    ]);
+    assert_eq!(run.code, Some(4), "{}", run.stderr);
+    let made: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(
+        made["bounds"]["lower_area_m2"].as_f64().unwrap() > 5e-4 && made["bounds"]["largest_gap_m"].is_null()
+    );
+    assert!(made["warnings"].to_string().contains("no upper bound"), "{}", made["warnings"]);
+    assert!(scratch.path().join("out/lower_bound.csv").exists());
+}
+
+/// Needles and slivers, whose areas and volumes are nothing beside the products that they are sums of, are written.
+#[test]
+fn contacts_next_to_each_other_have_bounds() {
+    let scratch = Scratch::new("needles");
+    scratch.write(
+        "sliver.csv",
+        "x,y,nx,ny\n\
+         -12.166130180685025,23.428650069745395,-0.8475077670138065,-0.5307829922400221\n\
+         -10.171403669681633,23.283508965629878,0.949915081368694,-0.31250814099525087\n\
+         -10.171404213780782,23.283509604300935,0.668955806247576,0.7433021789875606\n\
+         -12.166130116520614,23.42865030589795,-0.7124524694045697,0.7017203708310957\n\
+         -12.16612886703247,23.42864887415232,-0.5935888569366237,-0.8047684567132787\n",
+    );
+    scratch.write(
+        "needle.csv",
+        "x,y,z,nx,ny,nz\n\
+         -0.7407076378975705,0.34709162685860234,-0.06748717612603079,-0.20282979176902208,0.6792729781198983,0.7053001465809146\n\
+         -0.8143956952388784,0.41120705569331195,-0.2420043596877809,0.11143385273602627,-0.2643704384657666,-0.9579617778021333\n\
+         -0.7407031423197004,0.3470866173437883,-0.06748342176614507,0.48217831206335127,0.1814449155278871,0.8570774865814732\n\
+         -0.8143943181609681,0.4112081995665039,-0.2420037742924498,0.5151355697347483,0.3174146517447558,-0.7961678740390193\n",
+    );
+    for file in ["sliver.csv", "needle.csv"] {
+        let run = scratch.run(&["bounds", file, "-o", "out"]);
+        assert!(matches!(run.code, Some(0 | 4)), "{file}: {:?} {}", run.code, run.stderr);
+        assert_eq!(scratch.run(&["check", "out"]).code, Some(0), "{file}");
+    }
+}
+
+#[test]
+fn contacts_of_no_body_are_told_before_bounds_are_asked_for() {
+    let scratch = Scratch::new("no-body");
+    let good = ellipse([0.05, 0.03], (0..12).map(|k| TAU * f64::from(k) / 12.0));
+    let flipped = good.replacen("1.0,0.0", "-1.0,0.0", 1);
+    assert_ne!(good, flipped);
+    scratch.write("good.csv", &good).write("flipped.csv", &flipped);
+    scratch.write("one.csv", "x,y,nx,ny\n0.0,0.0,1.0,0.0\n");
+    assert_eq!(scratch.run(&["check-input", "good.csv"]).code, Some(0));
+    for file in ["flipped.csv", "one.csv"] {
+        let run = scratch.run(&["check-input", file]);
+        assert!(
+            run.code == Some(4) && run.stdout.contains("No body has these contacts"),
+            "{file} {}",
+            run.stdout
+        );
+    }
+}

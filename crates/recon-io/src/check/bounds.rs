@@ -15,6 +15,11 @@ const NOTABLE: f64 = 1e-6;
 /// next to each other on a curve or on a flat side do, the corner of three is off by as much more than the planes are.
 const DENTS: f64 = 1e-7;
 
+/// Sums over the same surface, about other points and in another order, that may be off each by their rounding.
+const SUMS: f64 = 4.0;
+/// Sizes of bounds that are one, as where both limits on curvature are the same, differ by rounding: as a share of them.
+const ALIKE: f64 = 1e-12;
+
 /// How far the first of two closed surfaces stands out of the second, m: the largest distance of a corner outside, 0 where
 /// all are inside, infinite out of what is no surface.
 #[must_use]
@@ -40,6 +45,8 @@ struct Bound {
     /// Largest coordinate, m, and the number of terms that `size` is a sum of.
     reach: f64,
     terms: usize,
+    /// What rounding may make of `size` beside that.
+    rounding: f64,
     not_convex: Option<Fault>,
 }
 
@@ -52,6 +59,7 @@ impl Bound {
             boundary: size.area,
             reach,
             terms: surface.triangles().len(),
+            rounding: size.rounding,
             not_convex: surface.not_convex(drawn + DENTS * reach).map(|flaw| fault(file, flaw)),
         }
     }
@@ -59,7 +67,15 @@ impl Bound {
     fn of_outline(file: &str, outline: &Outline, drawn: f64) -> Self {
         let ((size, boundary), reach) = (outline.size(), outline.reach());
         let not_convex = outline.not_convex(drawn + DENTS * reach).map(|flaw| fault(file, flaw));
-        Self { file: file.to_owned(), size, boundary, reach, terms: outline.corners().len(), not_convex }
+        Self {
+            file: file.to_owned(),
+            size,
+            boundary,
+            reach,
+            terms: outline.corners().len(),
+            rounding: 0.0,
+            not_convex,
+        }
     }
 
     /// How far the size of the boundary as written may be from that of the bound, whose boundary is nowhere farther than
@@ -69,7 +85,7 @@ impl Bound {
         let summed = self.terms as f64 * f64::EPSILON * self.boundary * self.reach;
         let curved =
             if in_space { 4.0 * PI * self.reach * t * t + 4.0 / 3.0 * PI * t.powi(3) } else { PI * t * t };
-        t * self.boundary + curved + summed
+        t * self.boundary + curved + summed + SUMS * self.rounding
     }
 }
 
@@ -123,7 +139,7 @@ impl Found {
             }
         }
         if let [Some(lower), Some(upper)] = sizes[..]
-            && lower > upper
+            && lower > upper * (1.0 + ALIKE)
         {
             self.faults.push(Fault::Crossed { lower, upper });
         }

@@ -28,7 +28,7 @@ pub enum BoundsError {
     },
     /// A contact point lies beyond the tangent line of another, by more than rounding.
     #[error(
-        "contact {} lies {:e} m beyond the tangent line of contact {}, which no convex outline allows: a contact is wrong or its normal points inwards, \
+        "contact {} (from 0) lies {:e} m beyond the tangent line of contact {} (from 0), which no convex outline allows: a contact is wrong or its normal points inwards, \
          contacts are noisy (state or estimate their noise), or the body is concave",
         .0.contact, .0.excess, .0.plane
     )]

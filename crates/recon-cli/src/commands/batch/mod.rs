@@ -25,7 +25,7 @@ pub(super) const TABLE: &str = "results.csv";
 pub(super) const PAGE: &str = "index.html";
 
 pub(crate) fn run(args: &BatchArgs, console: &Console) -> Result<Outcome, CliError> {
-    let logs = logs_in(&args.folder)?;
+    let logs = logs_in(&args.folder, console)?;
     // Before hours of work that could not be kept, and for the table of logs of which each is skipped.
     std::fs::create_dir_all(&args.output).map_err(|source| {
         CliError::from(OutputError::Io { action: "create", path: args.output.clone(), source })
@@ -65,19 +65,28 @@ pub(crate) fn run(args: &BatchArgs, console: &Console) -> Result<Outcome, CliErr
 }
 
 /// The logs of a folder, sorted by name; two of one name would have one folder of results.
-fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+fn logs_in(folder: &Path, console: &Console) -> Result<Vec<PathBuf>, CliError> {
     let unread = |source| CliError::Folder { path: folder.to_owned(), source };
     let mut logs = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(unread)? {
         let path = entry.map_err(unread)?.path();
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        if ENDINGS.contains(&ending.to_ascii_lowercase().as_str()) && path.is_file() {
-            logs.push(path);
+        if ENDINGS.contains(&ending.to_ascii_lowercase().as_str()) {
+            if path.is_file() {
+                logs.push(path);
+            } else {
+                console.note(&format!("{} is no file, and is passed over", path.display()));
+            }
         }
     }
     logs.sort();
     if logs.is_empty() {
         return Err(CliError::NoLogs { path: folder.to_owned() });
+    }
+    let taken = [Some(TABLE), Some(PAGE), Some("."), Some("..")];
+    if let Some(log) = logs.iter().find(|log| taken.contains(&log.file_stem().and_then(|stem| stem.to_str())))
+    {
+        return Err(CliError::LogName { path: log.clone() });
     }
     let mut stems = HashSet::new();
     match logs.iter().find(|log| !stems.insert(log.file_stem().map(ToOwned::to_owned))) {

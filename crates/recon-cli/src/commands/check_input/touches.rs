@@ -1,6 +1,7 @@
 //! What is understood of contacts or poses.
 
 use super::{Readings, Understood};
+use recon::shape_bounds::{BoundsError, ShapeBounds, planar};
 use recon_io::{Touches, brief, brief_to};
 use serde_json::json;
 
@@ -66,16 +67,43 @@ pub(super) fn told(found: Touches) -> Understood {
             );
         }
     }
+    let widest = span.iter().fold(0.0, |a: f64, b| a.max(*b));
+    if let Some((by, told)) = disagreement(&found) {
+        match by {
+            Some(by) if by < PLAINLY * widest => lines.push((
+                "as exact contacts".to_owned(),
+                format!("they contradict each other by {} m at least: take them for noisy", brief_to(2, by)),
+            )),
+            _ => warnings.push(format!("No body has these contacts: {told}.")),
+        }
+    }
     if span.iter().any(|of| *of > 100.0) {
-        warnings.push(format!(
-            "The points are {} m apart: are they in metres?",
-            brief(span.iter().fold(0.0, |a: f64, b| a.max(*b)))
-        ));
+        warnings.push(format!("The points are {} m apart: are they in metres?", brief(widest)));
     }
     let figures = json!({
         "kind": kind, "frames": frames, "rows": count, "curves": lengths, "extent_m": span, "normals_off_by": rounding,
     });
     Understood { lines, figures, warnings, readings: Readings::Touches(found) }
+}
+
+/// Contacts that contradict each other by more than this share of their extent are not so by noise.
+const PLAINLY: f64 = 0.1;
+
+/// Why contacts taken as exact are those of no body, and by how much (m) where one is beyond the tangent plane of another.
+fn disagreement(found: &Touches) -> Option<(Option<f64>, String)> {
+    match found {
+        Touches::Contacts { curves, .. } => {
+            let error = ShapeBounds::from_contacts(&curves.concat()).err()?;
+            let by = if let BoundsError::Contradiction(of) = &error { Some(of.excess) } else { None };
+            Some((by, error.to_string()))
+        }
+        Touches::PlanarContacts { curves, .. } => {
+            let error = planar::ShapeBounds::from_contacts(&curves.concat()).err()?;
+            let by = if let planar::BoundsError::Contradiction(of) = &error { Some(of.excess) } else { None };
+            Some((by, error.to_string()))
+        }
+        Touches::Poses(_) => None,
+    }
 }
 
 /// Extent of points along each axis.

@@ -1,6 +1,6 @@
 use super::envelope::{Around, Piece};
 use super::interior::common_point;
-use super::{CurvatureError, arc};
+use super::{CurvatureError, around_arc};
 use exact_hull::planar::{Direction, HalfPlane};
 use glam::DVec2;
 use std::f64::consts::TAU;
@@ -115,11 +115,15 @@ impl DiscIntersection {
             .sum()
     }
 
-    /// Points on the outline, counter-clockwise, at most `step` rad (at least a thousandth) of turning apart.
+    /// Corners of a polygon around it, counter-clockwise, whose sides touch it at most `step` rad (at least a thousandth) of turning apart: what is in
+    /// the bound is in the polygon.
     #[must_use]
     pub fn outline(&self, step: f64) -> Vec<DVec2> {
         let of_side = |side: &Side| match self.discs.get(side.source) {
-            Some(disc) => arc(side.start, side.angle, step).map(|u| disc.centre + u * disc.radius).collect(),
+            Some(disc) => {
+                let around = around_arc(side.start, side.angle, step).map(|u| disc.centre + u * disc.radius);
+                std::iter::once(side.from).chain(around).chain([side.to]).collect()
+            }
             None => vec![side.from, side.to],
         };
         self.sides.iter().flat_map(of_side).collect()

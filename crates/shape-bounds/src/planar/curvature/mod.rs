@@ -15,6 +15,7 @@ pub use error::CurvatureError;
 pub use rounded::RoundedHull;
 
 use super::ContactSample;
+use super::distance::nearest_around;
 use contact_kinematics::planar::RadiusBounds;
 use exact_hull::planar::Direction;
 #[cfg(test)]
@@ -75,6 +76,16 @@ impl CurvatureBounds {
         &self.upper
     }
 
+    /// How far the upper bound stands out of the lower one at most, m: their Hausdorff distance, or more than that by no more than arcs of a thousandth of a turn rise
+    /// above their chords.
+    #[must_use]
+    pub fn largest_gap(&self) -> f64 {
+        let outer = self.upper.outline(FINEST);
+        let nearest = nearest_around(self.lower.corners(), &outer);
+        let gaps = outer.iter().zip(nearest).map(|(outer, core)| outer.distance(core) - self.lower.radius());
+        gaps.fold(0.0, f64::max)
+    }
+
     /// Support functions `(lower, upper)` in direction `n`, in m.
     #[must_use]
     pub fn support(&self, n: Direction) -> (f64, f64) {
@@ -125,6 +136,14 @@ fn arc(from: f64, angle: f64, step: f64) -> impl Iterator<Item = DVec2> {
     (0..=parts).map(move |k| DVec2::from_angle(from + angle * f64::from(k) / f64::from(parts)))
 }
 
+/// Where tangents at the places of [`arc`] meet, from the centre of a circle of radius 1.
+fn around_arc(from: f64, angle: f64, step: f64) -> impl Iterator<Item = DVec2> {
+    // Tangents half a turn apart do not meet.
+    let parts = (angle / step.clamp(FINEST, 1.0)).ceil().max(1.0);
+    let half = 0.5 * angle / parts;
+    (0..parts as u32).map(move |k| DVec2::from_angle(from + half * f64::from(2 * k + 1)) / half.cos())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -149,8 +168,35 @@ mod tests {
         let cut = HalfPlane { point: DVec2::X * 0.7, normal: Direction::from_angle(0.1), margin: 0.0 };
         for planes in [&[][..], &[cut]] {
             let bound = DiscIntersection::of(&discs, planes).unwrap();
-            let area = drawn(bound.outline(step));
-            assert!((0.0..step * step).contains(&(bound.area() - area)), "{area} {}", bound.area());
+            let around = bound.outline(step);
+            // Outside, or on it but for rounding.
+            let most = around.iter().map(|p| bound.excess(*p).0).fold(f64::INFINITY, f64::min);
+            assert!(most > -1e-14, "{most:e}");
+            let area = drawn(around);
+            assert!((0.0..step * step).contains(&(area - bound.area())), "{area} {}", bound.area());
+        }
+    }
+
+    /// Against the support functions in many directions: no less than these, and hardly more.
+    #[test]
+    fn the_largest_gap_is_not_below_that_of_any_direction() {
+        for (flat, count) in [(1.0, 5), (0.2, 40), (0.02, 60)] {
+            let contact = |k: i32| {
+                let normal = Direction::from_angle(f64::from(k) * 2.4);
+                let n = normal.get();
+                let axes = DVec2::new(1.0, flat);
+                ContactSample { point: axes * axes * n / (axes * n).length(), normal }
+            };
+            let contacts: Vec<ContactSample> = (0..count).map(contact).collect();
+            let radii = RadiusBounds { min: 0.5 * flat * flat, max: 2.0 / flat };
+            let bounds = CurvatureBounds::from_contacts(&contacts, radii).unwrap();
+            let of = |k: u32| {
+                let (lower, upper) = bounds.support(Direction::from_angle(f64::from(k) * 1e-4));
+                upper - lower
+            };
+            let largest = (0..62832).map(of).fold(0.0, f64::max);
+            let told = bounds.largest_gap();
+            assert!(largest - 1e-12 <= told && told <= 1.001 * largest + 1e-6, "{flat}: {told} {largest}");
         }
     }
 
