@@ -173,6 +173,8 @@ pub(crate) enum CliError {
         /// Number from 1.
         palm: usize,
     },
+    #[error("no motion of a body is in the log: {odd}")]
+    Hopeless { odd: String },
     #[error("the log gives no motion, and is unlike its scene: {odd}")]
     OddLog {
         /// What is odd about it.
@@ -360,6 +362,7 @@ impl CliError {
             | Self::Noise(_)
             | Self::NoPalmForce { .. }
             | Self::OddLog { .. }
+            | Self::Hopeless { .. }
             | Self::Stream(_)
             | Self::NoPage
             | Self::Page(_)

@@ -18,6 +18,11 @@ const CURVATURE_SLACK: f64 = 1.1;
 /// Mean vertical contact force over weight outside of one over this and this: the object would fly or fall.
 const LARGEST_FORCE_RATIO: f64 = 5.0;
 
+/// Natural speeds by which forces may change the velocity from the first sample to the last: a body that stays between its palms is as fast as that at neither.
+const LARGEST_CHANGE: f64 = 5.0;
+/// The same beyond which no motion is worth looking for.
+const HOPELESS_CHANGE: f64 = 20.0;
+
 /// Measured torque over force times lever outside of one over this and this.
 const LARGEST_TORQUE_RATIO: f64 = 10.0;
 
@@ -49,6 +54,13 @@ pub enum Implausibility {
         /// Weight, N.
         weight: f64,
     },
+    /// What forces and weight together do to the velocity.
+    Drift {
+        /// Change of the velocity over the whole log, m/s.
+        change: f64,
+        /// Natural speed `sqrt(r g)` of an object whose contacts are `2 r` apart, m/s.
+        natural: f64,
+    },
     /// Torques against forces and contact positions.
     Torque {
         /// Palm from 1.
@@ -63,6 +75,14 @@ pub enum Implausibility {
         /// Natural time `sqrt(r / g)` of an object whose contacts are `2 r` apart, s.
         natural: f64,
     },
+}
+
+impl Implausibility {
+    /// Whether no motion is worth looking for.
+    #[must_use]
+    pub fn is_hopeless(&self) -> bool {
+        matches!(self, Self::Drift { change, natural } if *change > HOPELESS_CHANGE * natural)
+    }
 }
 
 impl fmt::Display for Implausibility {
@@ -88,6 +108,13 @@ impl fmt::Display for Implausibility {
                 "the palms carry {force:.3} N on average, but the scene's object weighs {weight:.3} N, a factor of {:.0}; \
                  check the units of force, mass and gravity",
                 factor(force / weight)
+            ),
+            Self::Drift { change, natural } => write!(
+                f,
+                "the forces of the palms and the weight together would change the object's velocity by {} m/s over the log, {} times what it has where it stays between the palms; do \
+                 all normals point into the palm's front, towards the object, and does each force stand in its own palm's column?",
+                brief_to(2, change),
+                brief_to(2, change / natural)
             ),
             Self::Torque { palm, ratio } => write!(
                 f,
@@ -141,6 +168,7 @@ pub fn implausibilities(log: &SensorLog, scene: &Scene) -> Vec<Implausibility> {
         spread.and_then(|s| against_gyration(s, scene)),
         spread.and_then(|s| against_curvature(s, scene)),
         against_weight(log, scene),
+        spread.and_then(|s| against_drift(log, s, scene)),
     ]
     .into_iter()
     .flatten()
@@ -210,6 +238,23 @@ fn against_weight(log: &SensorLog, scene: &Scene) -> Option<Implausibility> {
     let ratio = force / weight;
     (!(1.0 / LARGEST_FORCE_RATIO..=LARGEST_FORCE_RATIO).contains(&ratio))
         .then_some(Implausibility::Weight { force, weight })
+}
+
+/// Of palms without friction, all forces of which are sensed. Nothing is told of a body that is not known and that they do not hold up.
+fn against_drift(log: &SensorLog, spread: f64, scene: &Scene) -> Option<Implausibility> {
+    if scene.friction.is_some_and(|friction| friction > 0.0) {
+        return None;
+    }
+    let all = |s: &Sample| -> Option<DVec3> { s.palms.iter().map(|p| Some(p.normal.get() * p.force?)).sum() };
+    let forces: Vec<DVec3> = log.samples().iter().map(all).collect::<Option<_>>()?;
+    let mean = forces.iter().sum::<DVec3>() / forces.len() as f64;
+    let [first, .., last] = log.samples() else { return None };
+    let mass = scene.mass.unwrap_or(mean.z / scene.gravity);
+    let left = mean - DVec3::Z * (mass * scene.gravity);
+    let (change, natural) =
+        ((left * (last.t - first.t) / mass).length(), (0.5 * spread * scene.gravity).sqrt());
+    let odd = mass > 0.0 && natural > 0.0 && change > LARGEST_CHANGE * natural;
+    odd.then_some(Implausibility::Drift { change, natural })
 }
 
 fn torque_against_force(log: &SensorLog, i: usize) -> Option<Implausibility> {
@@ -285,6 +330,24 @@ mod tests {
             "{}",
             found[0]
         );
+    }
+
+    #[test]
+    fn a_palm_whose_normal_points_the_other_way_is_told() {
+        let known = scene("mass = 1.0");
+        let log = |flipped: bool| {
+            let mut one = at_rest(0.02, 1.0).samples()[0];
+            let n = one.palms[1].normal;
+            one.palms[1].normal = if flipped { -n } else { n };
+            let sample = |k: u32| Sample { t: f64::from(k) * 0.01, ..one };
+            SensorLog::new((0..200).map(sample).collect(), None).unwrap()
+        };
+        let drift = |log: &SensorLog| {
+            implausibilities(log, &known).into_iter().find(|odd| matches!(odd, Implausibility::Drift { .. }))
+        };
+        assert_eq!(drift(&log(false)), None);
+        let told = drift(&log(true)).unwrap();
+        assert!(told.is_hopeless() && told.to_string().contains("normals"), "{told}");
     }
 
     #[test]
