@@ -62,6 +62,19 @@ pub(crate) enum CliError {
          unless they are to be estimated (--identify) mass and inertia of the object; `recon init` writes one to start from"
     )]
     LogNeedsScene,
+    #[error(
+        "it is no contacts or poses, and a sensor log is read with its scene (--scene; `recon init` writes one to start from)"
+    )]
+    NeitherTouches {
+        #[source]
+        contacts: TouchesError,
+    },
+    #[error("{} holds no contacts.csv, which `recon explore` writes; name the file of contacts itself{}", folder.display(), curves.as_ref().map_or_else(String::new, |path| format!(", as {}", path.display())))]
+    NoContactsToGoOn {
+        folder: PathBuf,
+        /// A file there that has contacts.
+        curves: Option<PathBuf>,
+    },
     #[error("the mapping of topics cannot be used")]
     Mapping(#[from] MappingError),
     #[error("{} is an MCAP bag: give the mapping of its topics by --mapping; `recon inspect {} -o map.toml` drafts one", path.display(), path.display())]
@@ -173,7 +186,7 @@ pub(crate) enum CliError {
         /// Number from 1.
         palm: usize,
     },
-    #[error("no motion of a body is in the log: {odd}")]
+    #[error("the log gives no motion, and is unlike its scene: {odd}")]
     Hopeless { odd: String },
     #[error("the log gives no motion, and is unlike its scene: {odd}")]
     OddLog {
@@ -323,6 +336,8 @@ impl CliError {
             | Self::Folder { .. }
             | Self::NoLogs { .. }
             | Self::LogNeedsScene
+            | Self::NeitherTouches { .. }
+            | Self::NoContactsToGoOn { .. }
             | Self::SameName { .. }
             | Self::LogName { .. }
             | Self::BagFollowed { .. }

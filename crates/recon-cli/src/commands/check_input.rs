@@ -60,8 +60,10 @@ fn understood(args: &CheckInputArgs) -> Result<Understood, CliError> {
     if args.scene.is_none() && !is_bag(&args.input) {
         match read_touches(&args.input) {
             Ok(found) => return Ok(touches::told(found)),
-            // A header of something else: a log, which needs a scene.
-            Err(TouchesError { kind: TouchesErrorKind::MissingColumn { .. }, .. }) => {}
+            // A header of something else: a log, perhaps, which needs a scene.
+            Err(contacts @ TouchesError { kind: TouchesErrorKind::MissingColumn { .. }, .. }) => {
+                return Err(CliError::NeitherTouches { contacts });
+            }
             Err(error) => return Err(error.into()),
         }
     }

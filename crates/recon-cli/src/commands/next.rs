@@ -10,9 +10,6 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &NextArgs) -> Result<Outcome, CliError> {
     let (contacts, earlier) = inputs(&args.input)?;
-    if [SummaryOf::Contour, SummaryOf::Relief].iter().any(|of| earlier["schema"] == of.schema()) {
-        return Err(CliError::Followed { path: args.input.clone() });
-    }
     let (told, exit) = planned(args, &contacts, &earlier, &read_touches(&contacts)?)?;
     // For a program in any case: there is nothing else to say.
     Console::new(true, false).result("", &told)?;
@@ -68,5 +65,14 @@ pub(crate) fn inputs(input: &Path) -> Result<(PathBuf, Value), CliError> {
     let wrong = |what: String| CliError::NotExplored { path: path.clone(), what };
     let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
     let summary: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
-    Ok((input.join("contacts.csv"), summary))
+    let contacts = input.join("contacts.csv");
+    let followed = [SummaryOf::Contour, SummaryOf::Relief].iter().any(|of| summary["schema"] == of.schema());
+    if followed {
+        return Err(CliError::Followed { path: input.to_owned() });
+    }
+    if !contacts.exists() {
+        let curves = Some(input.join("contact_curves.csv")).filter(|path| path.exists());
+        return Err(CliError::NoContactsToGoOn { folder: input.to_owned(), curves });
+    }
+    Ok((contacts, summary))
 }

@@ -4,7 +4,7 @@ use super::bounds::{BoundsResult, meshes, own, unbounded};
 use crate::error::CliError;
 use recon::shape_bounds::concave::AlphaShape;
 use recon::shape_bounds::{ContactSample, ShapeBounds};
-use recon_io::{Bound, Bounds};
+use recon_io::{Bound, Bounds, brief_to};
 use serde_json::{Value, json};
 
 /// Bounds of the hull of a body, and its alpha shape, from exact contacts; the alpha shape for a radius, or for
@@ -24,12 +24,21 @@ pub(crate) fn concave_bounds(
             .to_owned(),
         "alpha_shape.ply and smooth_surface.ply are approximations of the object, no bounds.".to_owned(),
     ];
+    let volume = alpha.volume(radius)?;
+    // Of no tetrahedra: zero of either sign.
+    let empty = (volume <= 0.0).then(|| {
+        format!(
+            "No part of the object is in an alpha shape of the radius {} m: the contacts are farther apart; it takes {} m to leave it in one piece.",
+            brief_to(3, radius),
+            brief_to(3, alpha.connecting_radius())
+        )
+    });
     let about = json!({
         "noise": "none",
         "concave": {
             "contacts_kept_for_the_upper_bound": kept.len(),
             "alpha_radius_m": radius,
-            "alpha_volume_m3": alpha.volume(radius)?,
+            "alpha_volume_m3": volume.max(0.0),
         },
     });
     let drawn = Bounds {
@@ -39,7 +48,7 @@ pub(crate) fn concave_bounds(
     };
     let comment = "alpha shape, an approximation and no bound; metres";
     let others = vec![("alpha_shape.ply", comment, own(alpha.mesh(radius)?)?)];
-    let warnings = warnings.into_iter().chain(unbounded(&bounds)).collect();
+    let warnings = warnings.into_iter().chain(unbounded(&bounds)).chain(empty).collect();
     Ok((
         BoundsResult { drawn, lower, upper, others, features: None, contradiction: 0.0, warnings }.compared(),
         about,

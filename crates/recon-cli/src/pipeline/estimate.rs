@@ -81,8 +81,8 @@ pub(crate) fn estimated_planes(
     let mut request =
         AnyPalmsRequest { accuracy, covariances, ..AnyPalmsRequest::new(scene, title, identify) };
     let odd = implausibilities(&log, scene);
-    if let Some(odd) = odd.iter().find(|odd| odd.is_hopeless()) {
-        return Err(CliError::Hopeless { odd: odd.to_string() });
+    if let Some(first) = odd.first().filter(|_| odd.iter().any(Implausibility::is_hopeless)) {
+        return Err(CliError::Hopeless { odd: first.to_string() });
     }
     let (log, together) = condensed(log);
     let contacts = with_forces(&log, scene)?.shifted(p_WM);

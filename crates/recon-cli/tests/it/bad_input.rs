@@ -138,13 +138,13 @@ fn a_log_in_millimetres_is_named() {
 
 #[test]
 fn times_in_milliseconds_give_no_motion_and_a_hint() {
-    // At 100 Hz some motion is found, off by millions of deviations, and refused for that.
+    // Before a search, which took seconds: over a thousand times the time forces and weight do to the velocity what no body has.
     let slow = scene().replace("sample_rate = 100.0", "sample_rate = 50.0");
     let scratch = scratch_with_log_of("milliseconds", &slow);
     let mut table = Table::parse(&scratch.read("log.csv"));
     table.map(&["t"], |t| 1000.0 * t);
     scratch.write("bad.csv", &table.text());
-    refused(&scratch, &RECONSTRUCT, 3, &["the log gives no motion", "check units"]);
+    refused(&scratch, &RECONSTRUCT, 3, &["the log gives no motion", "is its time in milliseconds"]);
 }
 
 #[test]

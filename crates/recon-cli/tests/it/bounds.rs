@@ -434,6 +434,12 @@ fn contacts_of_no_body_are_told_before_bounds_are_asked_for() {
     assert_ne!(good, flipped);
     scratch.write("good.csv", &good).write("flipped.csv", &flipped);
     scratch.write("one.csv", "x,y,nx,ny\n0.0,0.0,1.0,0.0\n");
+    scratch.write("short.csv", "x,y,z\n0.0,0.0,1.0\n");
+    let short = scratch.run(&["check-input", "short.csv"]);
+    assert!(short.code == Some(3) && short.stderr.contains("column `nx` is missing"), "{}", short.stderr);
+    scratch.run(&["bounds", "good.csv", "-o", "out"]);
+    let next = scratch.run(&["next", "out", "--until", "gap=0.1"]);
+    assert!(next.code == Some(3) && next.stderr.contains("holds no contacts.csv"), "{}", next.stderr);
     assert_eq!(scratch.run(&["check-input", "good.csv"]).code, Some(0));
     for file in ["flipped.csv", "one.csv"] {
         let run = scratch.run(&["check-input", file]);
