@@ -121,7 +121,7 @@ fn standing_out_of_curves(curves: &[Vec<NoisyContact>], mut allowed: f64, dimens
     for _ in 0..ROUNDS {
         let alpha = allowed / curves.len() as f64;
         let traced =
-            curves.iter().enumerate().filter(|(_, contacts)| Traced { contacts, dimension }.is_in_order());
+            curves.iter().enumerate().filter(|(_, contacts)| Traced { contacts, dimension }.is_followed());
         let of_curve = |(curve, contacts): (usize, &Vec<NoisyContact>)| {
             let all = standing_out(contacts, alpha, dimension).into_iter();
             all.map(move |(index, deviations)| Outlier { curve, index, deviations, share: 0.0 })

@@ -44,6 +44,8 @@ pub(super) struct Polynomials {
     pub(super) gain: f64,
     /// By how much what one degree more would add is missed at 0, over the root of the sum of squares that it leaves.
     pub(super) next: f64,
+    /// The same of the power of the place that is one degree more, over the factorial of that degree.
+    pub(super) power: f64,
 }
 
 impl Polynomials {
@@ -51,6 +53,8 @@ impl Polynomials {
     pub(super) fn over(places: &[f64], degree: usize) -> Self {
         let norm = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
         let unit = 1.0 / (places.len() as f64).sqrt();
+        // Of the power of a place that is the degree: what lower ones leave of it, over the last of the basis.
+        let mut leading = 1.0 / unit;
         let mut basis = vec![(vec![unit; places.len()], unit)];
         while basis.len() <= degree + 1 {
             let last = &basis[basis.len() - 1];
@@ -62,14 +66,16 @@ impl Polynomials {
                 at_zero -= share * zero;
             }
             let scale = 1.0 / norm(&next);
+            leading /= scale * basis.len() as f64;
             next.iter_mut().for_each(|v| *v *= scale);
             basis.push((next, at_zero * scale));
         }
         let next = basis.pop().map_or(0.0, |(_, at_zero)| f64::abs(at_zero));
+        let power = next * leading;
         let weight = |k: usize| basis.iter().map(|(column, zero)| column[k] * zero).sum();
         let weights: Vec<f64> = (0..places.len()).map(weight).collect();
         let gain = norm(&weights).hypot(1.0);
-        Self { basis, weights, gain, next }
+        Self { basis, weights, gain, next, power }
     }
 
     /// The sum of squares that the nearest polynomial leaves of `values` at the places.
@@ -126,5 +132,9 @@ mod tests {
         let parabola = [-2.0_f64, -1.0, 1.0, 2.0].map(|t| DVec3::X * (t * t));
         let missed = line.weights.iter().zip(parabola).map(|(w, v)| w * v.x).sum::<f64>();
         assert!((missed.abs() - line.next * line.misfit(parabola.to_vec()).sqrt()).abs() < 1e-14);
+        assert!((missed.abs() - 2.0 * line.power).abs() < 1e-14, "the second power over two");
+        let cubic = Polynomials::over(&places, 3);
+        let missed = places.iter().zip(&cubic.weights).map(|(t, w)| w * t.powi(4)).sum::<f64>();
+        assert!((missed.abs() - 24.0 * cubic.power).abs() < 1e-10, "{missed} {}", cubic.power);
     }
 }

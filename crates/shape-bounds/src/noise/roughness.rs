@@ -3,6 +3,7 @@
 use super::model::NoisyContact;
 use super::polynomial::{Known, Predictor, around, neighbours};
 use super::quantile;
+use super::traced::{Course, Traced};
 use glam::{DMat3, DVec3};
 
 /// Neighbours on both sides: many carry little noise, a high degree follows a curve that bends.
@@ -21,6 +22,8 @@ const AROUND: [Predictor; 10] = [
 /// On one side, the nearest left out or not: places from the first to the last, and degrees. An edge, or a wrong neighbour, spoils
 /// what is predicted from the other side alone.
 const BESIDE: [(usize, usize, usize); 4] = [(1, 8, 2), (1, 5, 2), (2, 9, 2), (2, 6, 2)];
+/// A curve may bend that many times as sharply as one that turns evenly.
+const SHARPER: f64 = 1.5;
 /// The farthest place of a predictor.
 const REACH: usize = 9;
 
@@ -54,8 +57,10 @@ fn series(curve: &[NoisyContact], alpha: f64, dimension: usize) -> ([Series; 2],
     let of_normal = |c: &NoisyContact| DMat3::from_diagonal(DVec3::splat(c.noise.normal.powi(2)));
     let points = curve.iter().map(|c| (c.contact.point, c.noise.point)).collect();
     let normals = curve.iter().map(|c| (c.contact.normal.get(), of_normal(c))).collect();
-    let of = |values, dimension| Series { values, dimension, limit, known: Known::default() };
-    ([of(points, dimension), of(normals, dimension - 1)], limit)
+    let Course { size, turn, .. } = Traced { contacts: curve, dimension }.course();
+    let of =
+        |values, dimension, size| Series { values, dimension, limit, size, turn, known: Known::default() };
+    ([of(points, dimension, size), of(normals, dimension - 1, 1.0)], limit)
 }
 
 fn found_and_left(series: &mut [Series; 2], limit: f64, count: usize) -> (Vec<(usize, f64)>, Vec<usize>) {
@@ -108,6 +113,9 @@ struct Series {
     dimension: usize,
     /// Deviations beyond which one stands out.
     limit: f64,
+    /// About what they turn around, and the angle from one to the next, rad: powers of it bound how far a polynomial is off a smooth curve.
+    size: f64,
+    turn: f64,
     known: Known,
 }
 
@@ -177,9 +185,11 @@ impl Series {
         let seen = (misfit / (free * self.dimension as f64)).sqrt() * polynomials.gain;
         // What the next degree adds explains as much as it leaves beyond the noise.
         let bend = (misfit - free * noise).max(0.0).sqrt() * polynomials.next;
-        let length = vector.length();
+        let beyond = degree as i32 + 1;
+        let missed = SHARPER * self.size * (SHARPER * self.turn).powi(beyond) * polynomials.power;
+        let length = (vector.length() - missed).max(0.0);
         // Along its own direction: never more departures than by the inverse of the covariance, which there may be none of.
-        let stated = vector.dot(covariance * vector).max(0.0).sqrt() / length.max(f64::MIN_POSITIVE);
+        let stated = vector.dot(covariance * vector).max(0.0).sqrt() / vector.length().max(f64::MIN_POSITIVE);
         let deviation = stated.max(seen) + bend / self.limit;
         let deviations = if deviation > 0.0 { length / deviation } else { 0.0 };
         Departure { vector: vector / polynomials.gain, deviation, deviations, fitted: misfit <= free * noise }

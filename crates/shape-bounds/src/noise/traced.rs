@@ -79,7 +79,57 @@ impl Part {
     }
 }
 
+/// How contacts follow each other.
+pub(super) struct Course {
+    /// Median distance from their mean, m.
+    pub(super) size: f64,
+    /// Median angle from one to the next about that, or of their normals, if that is larger, rad.
+    pub(super) turn: f64,
+    /// Median change from one way between neighbours to the next, and that of the way over what the normal turns by, of their logarithms.
+    changes: [f64; 2],
+}
+
+/// Ways that change by more than that (of their logarithms) from one to the next are not those of a motion that is read at even times, ...
+const UNEVEN: f64 = 0.4;
+/// ... of those beyond so many deviations of noise, ...
+const SEEN: f64 = 3.0;
+/// ... if normals turn with them: what is left is less than this share. Of ways that noise makes uneven they do not.
+const ALIKE: f64 = 0.8;
+
 impl Traced<'_> {
+    pub(super) fn course(&self) -> Course {
+        let points = || self.contacts.iter().map(|c| c.contact.point);
+        let mean = points().sum::<DVec3>() / self.contacts.len().max(1) as f64;
+        let mut reach: Vec<f64> = points().map(|p| p.distance(mean)).collect();
+        let pairs = || self.contacts.iter().zip(self.contacts.iter().skip(1));
+        let mut steps: Vec<f64> = pairs().map(|(a, b)| a.contact.point.distance(b.contact.point)).collect();
+        let angle = |(a, b): (&NoisyContact, &NoisyContact)| {
+            a.contact.normal.get().angle_between(b.contact.normal.get())
+        };
+        let mut turns: Vec<f64> = pairs().map(angle).collect();
+        let ln = |v: f64| v.max(f64::MIN_POSITIVE).ln();
+        let radii: Vec<f64> = steps.iter().zip(&turns).map(|(step, turn)| ln(*step) - ln(*turn)).collect();
+        let ways: Vec<f64> = steps.iter().map(|step| ln(*step)).collect();
+        let noise =
+            |part: Part| self.contacts.iter().map(|c| part.stated(c, self.dimension)).fold(0.0, f64::max);
+        let [along, normal] = [Part::Along, Part::Normal].map(|part| SEEN * noise(part));
+        let seen = |k: usize| steps[k] > along && turns[k] > normal;
+        let changes = [ways, radii].map(|of| {
+            let both = (1..of.len()).filter(|k| seen(k - 1) && seen(*k));
+            median(&mut both.map(|k| (of[k] - of[k - 1]).abs()).collect::<Vec<_>>())
+        });
+        let (size, step) = (median(&mut reach), median(&mut steps));
+        let turn = if size > 0.0 { (step / size).max(median(&mut turns)) } else { 0.0 };
+        Course { size, turn, changes }
+    }
+
+    /// Whether neighbours may predict each other: contacts one after the other at even times.
+    pub(super) fn is_followed(&self) -> bool {
+        let [ways, radii] = self.course().changes;
+        let spaced_unevenly = ways > UNEVEN && radii < ALIKE * ways;
+        self.is_in_order() && !spaced_unevenly
+    }
+
     /// The deviation that differences of an order over contacts so far apart show, and its own relative deviation.
     pub(crate) fn deviation(&self, part: Part, order: usize, spacing: usize) -> (f64, f64) {
         let (weights, overlap) = binomials(order);
@@ -101,7 +151,7 @@ impl Traced<'_> {
 
     /// Whether there are enough contacts, in order, for the noise to be judged.
     pub(crate) fn is_traced(&self) -> bool {
-        self.contacts.len() >= FEWEST && self.is_in_order()
+        self.contacts.len() >= FEWEST && self.is_followed()
     }
 
     /// Whether each contact is near the one before: of contacts in no order, neighbours are as far apart as any two, and their
