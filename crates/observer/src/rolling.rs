@@ -30,9 +30,14 @@
 //! # }
 //! ```
 
+mod covariance;
+mod error;
+
+pub use error::RollingError;
+
 use crate::rigid::cross_matrix;
+use covariance::{PoseCovariance, level, outer};
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use thiserror::Error;
 
 /// Standard deviations of what the palms sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,61 +57,6 @@ pub struct RollingReading {
     pub upper: DVec3,
     /// The contact on the upper and on the lower palm, from the middle of each.
     pub contacts: [DVec2; 2],
-}
-
-/// Why there is no pose (any more).
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum RollingError {
-    /// Noise that is none.
-    #[error("{what} is {value}; it must be finite and not negative")]
-    Noise {
-        /// Which.
-        what: &'static str,
-        /// As given.
-        value: f64,
-    },
-    /// A reading with a number that is none.
-    #[error("reading {index} has a number that is not finite")]
-    NotFinite {
-        /// From 0.
-        index: usize,
-    },
-    /// The upper palm is not above the lower one.
-    #[error(
-        "reading {index}: the upper palm is at {height} m above the lower one; it must be above it (is z up, and in m?)"
-    )]
-    Height {
-        /// From 0.
-        index: usize,
-        /// As given, m.
-        height: f64,
-    },
-    /// Readings that are too far apart.
-    #[error(
-        "between readings {before} and {index} the body turned by {turn:.3} rad; read more often, at least every {most} rad", before = index - 1
-    )]
-    Apart {
-        /// Of the later one, from 1.
-        index: usize,
-        /// In rad.
-        turn: f64,
-        /// Largest turn between readings, rad.
-        most: f64,
-    },
-    /// A contact slips, or noise is larger than stated.
-    #[error(
-        "by reading {index} the height of the upper palm is {by:.3e} m from where a body that rolls would have it, {deviations:.1} deviations: a contact slips, or the noise of contacts or palm is larger \
-         than stated"
-    )]
-    Slipped {
-        /// From 0.
-        index: usize,
-        /// By how much, m.
-        by: f64,
-        /// The same in standard deviations.
-        deviations: f64,
-    },
 }
 
 /// Largest turn between two readings, rad: the mean of two is off by a hundredth of it.
@@ -148,34 +98,6 @@ impl RolledPose {
     pub fn deviations(&self) -> (f64, f64) {
         let root = |m: DMat3| (m.x_axis.x + m.y_axis.y + m.z_axis.z).max(0.0).sqrt();
         (root(self.rotation), root(self.translation))
-    }
-}
-
-/// Covariance of an error of the pose in the world: turns `theta` and shifts `d` of the body's origin.
-#[derive(Clone, Copy, Debug, Default)]
-struct PoseCovariance {
-    rotation: DMat3,
-    translation: DMat3,
-    cross: DMat3,
-}
-
-impl PoseCovariance {
-    const NONE: Self = Self { rotation: DMat3::ZERO, translation: DMat3::ZERO, cross: DMat3::ZERO };
-
-    fn turned(self, by: DMat3) -> Self {
-        let turn = |m: DMat3| by * m * by.transpose();
-        Self { rotation: turn(self.rotation), translation: turn(self.translation), cross: turn(self.cross) }
-    }
-
-    /// A further turn of this covariance about a point at `-arm` from the origin.
-    fn with_turn(self, turn: DMat3, arm: DVec3) -> Self {
-        // d = theta x arm.
-        let shift = -cross_matrix(arm);
-        Self {
-            rotation: self.rotation + turn,
-            translation: self.translation + shift * turn * shift.transpose(),
-            cross: self.cross + turn * shift.transpose(),
-        }
     }
 }
 
@@ -353,15 +275,6 @@ fn check(reading: &RollingReading, index: usize) -> Result<(), RollingError> {
 fn span(reading: &RollingReading) -> DVec3 {
     let [upper, lower] = reading.contacts;
     reading.upper + (upper - lower).extend(0.0)
-}
-
-/// The same variance along both level axes.
-fn level(variance: f64) -> DMat3 {
-    DMat3::from_diagonal(DVec3::new(variance, variance, 0.0))
-}
-
-fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
 #[cfg(test)]
