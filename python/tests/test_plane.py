@@ -83,8 +83,9 @@ def test_the_motion_is_found(log: plane.Log, result: plane.Reconstruction) -> No
     assert relied.mean() > 0.9 and (np.abs(off)[relied] < 6.0 * result.position_std[relied]).all()
     assert result.mass_std is not None and abs(result.mass - 0.2) < 6.0 * result.mass_std
     assert result.inertia_std is not None and abs(result.inertia - 1.8e-4) < 6.0 * result.inertia_std
-    # The contacts leave the outline open on one side.
-    assert result.outlines is None and result.areas is None and any("no bounds" in warning for warning in result.warnings)
+    # The contacts leave the outline open on one side: there is no upper bound.
+    assert result.outlines is not None and result.areas is not None and any("no upper bound" in warning for warning in result.warnings)
+    assert len(result.outlines[0]) > 2 and len(result.outlines[1]) == 0 and result.areas[0] > 0.0 and np.isinf(result.areas[1])
 
 
 def test_the_folder_is_that_of_the_command(log: plane.Log, tmp_path: Path, command: str) -> None:
