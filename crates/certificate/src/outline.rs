@@ -62,15 +62,12 @@ impl Outline {
     /// Why this does not go once round one convex body, but for dents of depth `tolerance` (m).
     #[must_use]
     pub fn not_convex(&self, tolerance: f64) -> Option<Flaw> {
-        let count = self.distinct(0.0).0.len();
-        if count < 3 {
-            return Some(Flaw::NotConvex(format!("it has {count} corner(s) that differ")));
-        }
         let distinct = self.distinct(tolerance);
         let (corners, count) = (&distinct.0, distinct.0.len());
         if count < 3 {
             // A sliver that is thinner than that has no dents that are deeper.
-            return None;
+            let count = self.distinct(0.0).0.len();
+            return (count < 3).then(|| Flaw::NotConvex(format!("it has {count} corner(s) that differ")));
         }
         let depth = |k: usize| {
             let [a, b, c] = [corners[k], corners[(k + 1) % count], corners[(k + 2) % count]];

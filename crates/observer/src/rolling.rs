@@ -172,14 +172,16 @@ impl RollingObserver {
         if angle > APART {
             return Err(RollingError::Apart { index, turn: angle, most: APART });
         }
-        let height = self.risen(reading, turn, index)?;
+        // How far contacts went: the lower one, and the span of both; and what of that is beyond how they went before.
+        let span = span(now);
+        let gone = [now.contacts[1] - before.contacts[1], (span - self::span(before)).truncate()];
+        let jumps = self.jumps(gone, angle);
+        let height = self.risen(reading, turn, jumps[1], index)?;
         // About the mean of the lower contacts.
         let centre = (0.5 * (before.contacts[1] + now.contacts[1])).extend(0.0);
         let by = DQuat::from_scaled_axis(turn);
         let arm = by * (self.p_WO - centre);
-        let jumps = self.jumps(reading, angle);
         let RollingNoise { contact, palm, spin } = self.noise;
-        let span = span(now);
         let along = span.normalize_or_zero();
         // Heights, and places of the palm that are turns at one height and others at the next.
         let of_height = outer(turn) * (palm * inverse).powi(2);
@@ -194,7 +196,7 @@ impl RollingObserver {
         let within = cross_matrix(turn) * outer(jumps[0].extend(0.0)) * cross_matrix(turn).transpose();
         covariance.translation += within * ANYWHERE;
 
-        self.moved = [now.contacts[1] - before.contacts[1], (span - self::span(before)).truncate()];
+        self.moved = gone;
         (self.index, self.last, self.turn, self.height) = (index, *now, turn, height);
         self.R_WO = (by * self.R_WO).normalize();
         self.p_WO = centre + arm;
@@ -202,10 +204,8 @@ impl RollingObserver {
         Ok(())
     }
 
-    /// What contacts moved beyond how they moved before: the lower one, and the span of both.
-    fn jumps(&self, reading: &RollingReading, angle: f64) -> [DVec2; 2] {
-        let moved =
-            [reading.contacts[1] - self.last.contacts[1], (span(reading) - span(&self.last)).truncate()];
+    /// What contacts moved beyond how they moved before.
+    fn jumps(&self, moved: [DVec2; 2], angle: f64) -> [DVec2; 2] {
         let before = self.turn.length();
         // Neither of a body that stood.
         let share = if before > 0.0 { (angle / before).min(1.0) } else { 1.0 };
@@ -213,9 +213,14 @@ impl RollingObserver {
     }
 
     /// How the height rises with a turn: by its moment about the lower contact, `turn x span`.
-    fn risen(&self, reading: &RollingReading, turn: DVec3, index: usize) -> Result<Height, RollingError> {
+    fn risen(
+        &self,
+        reading: &RollingReading,
+        turn: DVec3,
+        jump: DVec2,
+        index: usize,
+    ) -> Result<Height, RollingError> {
         let mean = 0.5 * (span(&self.last) + span(reading));
-        let [_, jump] = self.jumps(reading, turn.length());
         let within = turn.truncate().perp_dot(jump).powi(2) * ANYWHERE;
         let weight = 0.5 * (self.turn + turn);
         // The span has the noise of two contacts.

@@ -103,12 +103,26 @@ impl<F: Fn(Direction) -> DVec3> SimulatedParallelPalms<F> {
         Ok(moved)
     }
 
-    fn strokes(heading: f64, turn: f64) -> Result<(DVec2, usize, f64), ParallelPalmsError> {
+    /// A stroke, step by step: how far the upper palm went (m), and what stopped it. `each` sees the palms after every step.
+    fn moved(
+        &mut self,
+        heading: f64,
+        turn: f64,
+        mut each: impl FnMut(&mut Self),
+    ) -> Result<(f64, Option<Stop>), ParallelPalmsError> {
         if !(heading.is_finite() && turn.is_finite()) {
             return Err(ParallelPalmsError::Stroke { heading, turn });
         }
-        let (parts, step) = steps(turn, STEP);
-        Ok((DVec2::from_angle(heading), parts, step))
+        let (along, (parts, step)) = (DVec2::from_angle(heading), steps(turn, STEP));
+        let mut way = 0.0;
+        for _ in 0..parts {
+            match self.step(along, step) {
+                Ok(moved) => way += moved,
+                Err(why) => return Ok((way, Some(why))),
+            }
+            each(self);
+        }
+        Ok((way, None))
     }
 }
 
@@ -118,17 +132,7 @@ impl<F: Fn(Direction) -> DVec3> ParallelPalms for SimulatedParallelPalms<F> {
     }
 
     fn roll(&mut self, heading: f64, turn: f64) -> Result<FeltBetween, ParallelPalmsError> {
-        let (along, parts, step) = Self::strokes(heading, turn)?;
-        let (mut way, mut stop) = (0.0, None);
-        for _ in 0..parts {
-            match self.step(along, step) {
-                Ok(moved) => way += moved,
-                Err(why) => {
-                    stop = Some(why);
-                    break;
-                }
-            }
-        }
+        let (way, stop) = self.moved(heading, turn, |_| ())?;
         self.felt(way, stop)
     }
 }
@@ -143,14 +147,8 @@ impl<F: Fn(Direction) -> DVec3> SensedPalms for SimulatedParallelPalms<F> {
         heading: f64,
         turn: f64,
     ) -> Result<(Vec<RollingReading>, Option<Stop>), ParallelPalmsError> {
-        let (along, parts, step) = Self::strokes(heading, turn)?;
-        let mut sensed = Vec::with_capacity(parts);
-        for _ in 0..parts {
-            if let Err(stop) = self.step(along, step) {
-                return Ok((sensed, Some(stop)));
-            }
-            sensed.push(self.sensed());
-        }
-        Ok((sensed, None))
+        let mut sensed = Vec::new();
+        let (_, stop) = self.moved(heading, turn, |palms| sensed.push(palms.sensed()))?;
+        Ok((sensed, stop))
     }
 }

@@ -81,8 +81,9 @@ impl Part {
 
 /// How contacts follow each other.
 pub(super) struct Course {
-    /// Median distance from their mean, m.
+    /// Median distance from their mean, and from one to the next, m.
     pub(super) size: f64,
+    step: f64,
     /// Median angle from one to the next about that, or of their normals, if that is larger, rad.
     pub(super) turn: f64,
     /// Median change from one way between neighbours to the next, and that of the way over what the normal turns by, of their logarithms.
@@ -120,14 +121,15 @@ impl Traced<'_> {
         });
         let (size, step) = (median(&mut reach), median(&mut steps));
         let turn = if size > 0.0 { (step / size).max(median(&mut turns)) } else { 0.0 };
-        Course { size, turn, changes }
+        Course { size, step, turn, changes }
     }
 
-    /// Whether neighbours may predict each other: contacts one after the other at even times.
+    /// Whether neighbours may predict each other: contacts one after the other at even times. Of those in no order, neighbours are as far apart as any
+    /// two, and their differences say nothing of noise.
     pub(super) fn is_followed(&self) -> bool {
-        let [ways, radii] = self.course().changes;
+        let Course { size, step, changes: [ways, radii], .. } = self.course();
         let spaced_unevenly = ways > UNEVEN && radii < ALIKE * ways;
-        self.is_in_order() && !spaced_unevenly
+        step < 0.5 * size && !spaced_unevenly
     }
 
     /// The deviation that differences of an order over contacts so far apart show, and its own relative deviation.
@@ -152,16 +154,6 @@ impl Traced<'_> {
     /// Whether there are enough contacts, in order, for the noise to be judged.
     pub(crate) fn is_traced(&self) -> bool {
         self.contacts.len() >= FEWEST && self.is_followed()
-    }
-
-    /// Whether each contact is near the one before: of contacts in no order, neighbours are as far apart as any two, and their
-    /// differences say nothing of noise.
-    pub(crate) fn is_in_order(&self) -> bool {
-        let points = || self.contacts.iter().map(|c| c.contact.point);
-        let mean = points().sum::<DVec3>() / self.contacts.len().max(1) as f64;
-        let mut steps: Vec<f64> = points().zip(points().skip(1)).map(|(a, b)| a.distance(b)).collect();
-        let mut reach: Vec<f64> = points().map(|p| p.distance(mean)).collect();
-        median(&mut steps) < 0.5 * median(&mut reach)
     }
 }
 
