@@ -22,6 +22,8 @@ pub struct Dynamics {
     pub gravity: f64,
     /// Angular velocity of the body now, rad/s.
     pub omega: f64,
+    /// Coefficient of friction of both palms, by which motions are predicted.
+    pub friction: f64,
 }
 
 /// The fastest that a turn from rest to rest is, over its mean speed: the polynomial of degree 7.
@@ -69,12 +71,14 @@ pub(super) type Swing = (f64, f64);
 const STEPS: f64 = 12.0;
 /// Every so many of them the contacts are felt.
 const FELT: usize = 2;
+/// Speed below which a contact that friction holds creeps, over what friction alone takes off in a step: faster than that steps would not be stable.
+const CREEP: f64 = 1.0;
 
 impl Dynamics {
-    /// Where a body drawn is after a turn of the palms and the wait, and the directions (rad) that are felt of it; none if it is lost.
+    /// Where a body drawn is after a turn of the palms and the wait, and the directions (rad) that are felt of it; none if it is lost, or jams.
     ///
-    /// By the equations of motion of a body that is held by two palms without friction, one degree of freedom, in classical Runge-Kutta steps: where a
-    /// palm would have to pull nothing is felt on it, and the short flight there is left out.
+    /// By the equations of motion of a body that is held by two palms, one degree of freedom, in classical Runge-Kutta steps: where a palm would have to
+    /// pull nothing is felt on it, and the short flight there is left out. Where friction holds a contact it creeps.
     pub(super) fn swung(
         &self,
         body: &DrawnBody,
@@ -96,11 +100,17 @@ impl Dynamics {
         let natural = (0.5 * workspace.size / self.gravity).sqrt();
         let parts = (end * STEPS / natural).ceil().max(1.0) as usize;
         let h = end / parts as f64;
+        let rubbing = [self.friction, CREEP * self.friction * self.gravity * h];
+        let reaction = |at: &PalmPairState, y: DVec2| match self.friction > 0.0 {
+            true => object.rubbing_reaction(at, y.x, y.y, rubbing),
+            false => Some(object.reaction(at, y.x, y.y)),
+        };
+        let rate = |at: &PalmPairState, y: DVec2| Some(DVec2::new(y.y, reaction(at, y)?.alpha0));
         let (mut y, mut thetas) = (DVec2::new(start.0, start.1), Vec::new());
         for k in 0..parts {
             let t = k as f64 * h;
             let [begin, middle, end] = [palms(t)?, palms(t + 0.5 * h)?, palms(t + h)?];
-            let now = object.reaction(&begin, y.x, y.y);
+            let now = reaction(&begin, y)?;
             if now.contact.s.iter().any(|s| !(0.0..=workspace.length).contains(s)) {
                 return None;
             }
@@ -108,11 +118,10 @@ impl Dynamics {
                 let felt = begin.pair.contact_directions(y.x);
                 thetas.extend((0..2).filter(|i| now.forces[*i] > 0.0).map(|i| felt[i]));
             }
-            let rate = |at: &PalmPairState, y: DVec2| DVec2::new(y.y, object.reaction(at, y.x, y.y).alpha0);
             let k1 = DVec2::new(y.y, now.alpha0);
-            let k2 = rate(&middle, y + k1 * (0.5 * h));
-            let k3 = rate(&middle, y + k2 * (0.5 * h));
-            let k4 = rate(&end, y + k3 * h);
+            let k2 = rate(&middle, y + k1 * (0.5 * h))?;
+            let k3 = rate(&middle, y + k2 * (0.5 * h))?;
+            let k4 = rate(&end, y + k3 * h)?;
             y += (k1 + 2.0 * (k2 + k3) + k4) * (h / 6.0);
         }
         y.is_finite().then_some(((y.x, y.y), thetas))

@@ -2,7 +2,10 @@
 
 use super::mass::PlanarMass;
 use contact_kinematics::planar::{PairContact, PalmPairState, RadiusFunction};
-use glam::DVec2;
+use glam::{DMat2, DVec2};
+
+/// Share of what it is without friction below which the matrix of forces, or the inertia against them, counts as none: the object wedges.
+const WEDGING: f64 = 1e-3;
 
 /// A planar object in gravity.
 #[derive(Clone, Copy, Debug)]
@@ -69,6 +72,44 @@ impl<S: RadiusFunction> PlanarObject<S> {
             / (self.mass.gyration_squared() + dual_d[0] * d[0] + dual_d[1] * d[1]);
         let forces = dual(palms, [d[0] * alpha0 + b[0], d[1] * alpha0 + b[1]]).map(|x| self.mass.mass() * x);
         PairReaction { alpha0, forces, contact, v_WCm }
+    }
+
+    /// The same between palms with friction, both of which it slides along: none where it wedges, so that forces have no end.
+    ///
+    /// Of a contact that slips at `slip` friction is `friction slip / hypot(slip, creep)` of the normal force, so that one that sticks creeps at less
+    /// than `creep` (m/s). With these ratios `m`, forces `f_i (n_i + m_i u_i)`, the matrix `G_ji = n_j . n_i + m_i n_j . u_i` and the levers
+    /// `w_i = (p_C - p_Cm) x (n_i + m_i u_i)`: `f = m G^-1 (d alpha0 + k - gn)` and `alpha0 = w . G^-1 (k - gn) / (I0/m - w . G^-1 d)`.
+    #[must_use]
+    pub fn rubbing_reaction(
+        &self,
+        palms: &PalmPairState,
+        phi0: f64,
+        omega0: f64,
+        [friction, creep]: [f64; 2],
+    ) -> Option<PairReaction> {
+        let contact = PairContact::new(&self.shape, &palms.pair, phi0);
+        let v_WCm = contact.velocity(palms, omega0).v_WCm;
+        let b = bias(&contact, v_WCm, palms, omega0, self.gravity);
+        let ([n1, n2], [u1, u2]) = (palms.pair.normals(), palms.pair.along());
+        let [j1, j2] = contact.jets;
+        // What the contact is turned by about the centre of mass along the palm: palm 2 is on the other side of it.
+        let [turn1, turn2] = [j1.r, -j2.r];
+        let ratio = |slip: f64| if slip == 0.0 { 0.0 } else { -friction * slip / slip.hypot(creep) };
+        let (m1, m2) = (ratio(u1.dot(v_WCm) + turn1 * omega0), ratio(u2.dot(v_WCm) + turn2 * omega0));
+        let c = n1.dot(n2);
+        // Its transpose has the forces' directions as columns: along its own palm friction has no normal part.
+        let g = DMat2::from_cols(DVec2::new(1.0, c + m1 * n2.dot(u1)), DVec2::new(c + m2 * n1.dot(u2), 1.0));
+        let least = WEDGING * (1.0 - c * c);
+        let inverse = Some(g).filter(|g| g.determinant() > least)?.inverse();
+        let (w, d) = (DVec2::new(m1 * turn1 - j1.d, m2 * turn2 - j2.d), DVec2::new(j1.d, j2.d));
+        let inertia = self.mass.gyration_squared() - w.dot(inverse * d);
+        if inertia <= WEDGING * self.mass.gyration_squared() {
+            return None;
+        }
+        let b = DVec2::from(b);
+        let alpha0 = w.dot(inverse * b) / inertia;
+        let forces = (inverse * (d * alpha0 + b) * self.mass.mass()).to_array();
+        Some(PairReaction { alpha0, forces, contact, v_WCm })
     }
 
     /// Kinetic and potential energy (J) of the object, the latter against the hinge's height.

@@ -12,6 +12,8 @@ const BY_NOISE: f64 = 1.2816;
 /// Standard deviations by which a ratio is below that of sliding where a contact is said to stick. One that slides and is said
 /// to stick is an error of its slip; one that sticks and is said to slide loses two conditions.
 const BELOW: f64 = 4.0;
+/// Share of the ratio of sliding by which that of a sample alone must be below it, at most, to be told from it by that sample.
+const CERTAIN: f64 = 0.1;
 /// Least relative deviation of a ratio.
 const LEAST: f64 = 0.01;
 
@@ -58,8 +60,9 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
             slides.for_each(|(modes, _)| modes[i] = ContactMode::Slide);
             continue;
         }
-        let ratios = averaged(&ratios(record, i), times, time);
-        let slides = sliding(&ratios);
+        let own = ratios(record, i);
+        let ratios = averaged(&own, times, time);
+        let slides = sliding(&ratios, &own);
         // A mean may be below that of sliding by the samples beside it: nearer than `time` to one that is not it tells nothing.
         let before = nearest(&slides, times, (0..times.len()).collect());
         let after = nearest(&slides, times, (0..times.len()).rev().collect());
@@ -74,8 +77,9 @@ pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PAL
     modes
 }
 
-/// Whether a contact is not clearly below the ratio of sliding.
-fn sliding(means: &[Option<Mean>]) -> Vec<bool> {
+/// Whether a contact is not clearly below the ratio of sliding, by the mean or, where noise leaves the ratio of a sample as good as certain, by that: a slip that
+/// lasts for less than a mean is hidden in it.
+fn sliding(means: &[Option<Mean>], own: &[Option<Ratio>]) -> Vec<bool> {
     // Of a mean over forces that do not press nothing is known.
     let mut sorted: Vec<f64> =
         means.iter().flatten().map(Mean::less_noise).filter(|ratio| ratio.is_finite()).collect();
@@ -85,11 +89,13 @@ fn sliding(means: &[Option<Mean>]) -> Vec<bool> {
         // Nothing is clearly below what noise alone may be.
         return means.iter().map(Option::is_some).collect();
     };
-    let slides = |mean: &Mean| {
-        let deviation = LEAST.hypot(mean.deviation(sliding) / sliding);
-        mean.ratio.value >= sliding * (1.0 - BELOW * deviation)
+    let below = |mean: &Mean| BELOW * LEAST.hypot(mean.deviation(sliding) / sliding);
+    let slides = |mean: &Mean| mean.ratio.value >= sliding * (1.0 - below(mean));
+    let alone = |ratio: Ratio| Some(Mean { ratio, samples: 1 }).filter(|one| below(one) < CERTAIN);
+    let one = |(mean, own): (&Option<Mean>, &Option<Ratio>)| {
+        mean.as_ref().is_some_and(slides) || own.and_then(alone).as_ref().is_some_and(slides)
     };
-    means.iter().map(|mean| mean.as_ref().is_some_and(slides)).collect()
+    means.iter().zip(own).map(one).collect()
 }
 
 /// Time between each sample and the last one before it, in some order, that slides.
@@ -186,7 +192,7 @@ mod tests {
             Some(Mean { ratio: Ratio { value: ratio, share: noise * noise / (n * n + f * f) }, samples: 1 })
         };
         let means: Vec<_> = (0..900).map(|k| mean(if k % 3 == 0 { 1.0 } else { 0.05 })).collect();
-        let sticks = sliding(&means).into_iter().filter(|slides| !slides).count();
+        let sticks = sliding(&means, &[None; 900]).into_iter().filter(|slides| !slides).count();
         assert!(sticks <= 1, "{sticks} of {}", means.len());
         // One that is held at half of its cone is told, of those that press.
         let held = |k: usize| k.is_multiple_of(9);
@@ -196,12 +202,35 @@ mod tests {
                     .map(|m| if held(k) { Mean { ratio: Ratio { value: 0.15, ..m.ratio }, ..m } } else { m })
             })
             .collect();
-        let slides = sliding(&half);
+        let slides = sliding(&half, &[None; 900]);
         assert!((0..900).filter(|&k| held(k)).all(|k| !slides[k]));
         // Of what does not press at all nothing is known.
         let none = Mean { ratio: Ratio { value: f64::INFINITY, share: 0.0 }, samples: 1 };
-        assert!(sliding(&[Some(none); 5]).into_iter().all(|slides| slides));
-        assert!(sliding(&[None; 5]).into_iter().all(|slides| !slides));
+        assert!(sliding(&[Some(none); 5], &[None; 5]).into_iter().all(|slides| slides));
+        assert!(sliding(&[None; 5], &[None; 5]).into_iter().all(|slides| !slides));
+    }
+
+    /// Three samples of a slip amid sticking, which a mean over nine hides: told where noise lets them be, and by no sample where it does not.
+    #[test]
+    fn a_slip_that_is_shorter_than_a_mean_is_told() {
+        let mut random = Normal::seeded(5);
+        let times: Vec<f64> = (0..400).map(f64::from).collect();
+        let mut slides = |noise: f64| {
+            let ratio = |k: usize| match k {
+                0..200 | 298..=300 => 0.3,
+                _ => 0.15 * (0.1 * k as f64).sin().abs(),
+            };
+            let mut one = |k: usize| Ratio { value: ratio(k) + noise * random.draw(), share: noise * noise };
+            let own: Vec<Option<Ratio>> = (0..400).map(|k| Some(one(k))).collect();
+            sliding(&averaged(&own, &times, 4.0), &own)
+        };
+        let short = 298..301;
+        let fine = slides(1e-3);
+        assert!(short.clone().all(|k| fine[k]));
+        let beside = |k: &usize| (210..290).contains(k) || (310..400).contains(k);
+        assert!((0..400).filter(beside).all(|k| !fine[k]));
+        let coarse = slides(2e-2);
+        assert!((0..400).filter(beside).filter(|k| coarse[*k]).count() < 5, "one sample tells nothing there");
     }
 
     #[test]

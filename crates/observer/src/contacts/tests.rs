@@ -10,6 +10,7 @@ use glam::{DMat3, DQuat, DVec3};
 use nalgebra::SVector;
 use object_dynamics::*;
 
+mod averages;
 mod beginning;
 mod frictionless;
 mod halves;

@@ -22,6 +22,9 @@ const TRIED: usize = 6;
 /// Deviations of a normal variable that it is beyond once in a thousand.
 const UNLIKELY: f64 = 3.1;
 
+/// Deviations of a window's squares beyond which its contacts bend.
+const BENT: f64 = 5.0;
+
 /// Samples for each that is kept, from which on thinning is worth it.
 const THINNED: usize = 3;
 
@@ -50,17 +53,10 @@ pub(super) fn longest(record: &Record, noise: &ContactNoiseLevel, units: &Units)
 /// Whether contacts depart from the parabolas through windows by more than noise does, at odds of a thousand to one.
 fn bent(record: &Record, longest: f64, deviation: f64) -> bool {
     let (mut squares, mut freedoms) = (0.0, 0.0);
-    for window in windows(record, longest) {
+    for window in alike(record, longest) {
         for i in 0..record.contacts[window.middle()].len() {
-            let Some(parabola) = Parabola::new(&window, &record.times, |k| record.contacts[k][i].c) else {
-                continue;
-            };
-            for k in window.around.clone() {
-                let after = record.times[k] - record.times[window.middle()];
-                squares += (record.contacts[k][i].c - parabola.at(after)).length_squared();
-            }
-            let axes = record.contacts[window.middle()][i].freedoms() as f64;
-            freedoms += axes * (window.around.len() as f64 - 3.0);
+            let of = window.left(record, i).unwrap_or_default();
+            (squares, freedoms) = (squares + of.0, freedoms + of.1);
         }
     }
     // Each sample is around three windows.
@@ -79,6 +75,33 @@ impl Window {
         usize::midpoint(self.own.start, self.own.end - 1)
     }
 
+    /// What contact `i` leaves of the parabola through the samples around, m^2, and of how many freedoms. None with too few of them.
+    fn left(&self, record: &Record, i: usize) -> Option<(f64, f64)> {
+        let middle = self.middle();
+        let parabola = Parabola::new(self, &record.times, |k| record.contacts[k][i].c)?;
+        let left = |k: usize| {
+            let after = record.times[k] - record.times[middle];
+            (record.contacts[k][i].c - parabola.at(after)).length_squared()
+        };
+        let axes = record.contacts[middle][i].freedoms() as f64;
+        Some((self.around.clone().map(left).sum(), axes * (self.around.len() as f64 - 3.0)))
+    }
+
+    /// One of each sample where a contact departs from its parabola by more than noise does, at odds of some thousands to one: where the curvature of an
+    /// outline rises within few samples no parabola follows it, though most others are followed.
+    fn apart(self, record: &Record) -> Vec<Self> {
+        let variance = record.deviation * record.deviation;
+        let bends = |(squares, freedoms): (f64, f64)| {
+            squares > variance * (freedoms + BENT * (2.0 * freedoms).sqrt())
+        };
+        let all = 0..record.contacts[self.middle()].len();
+        if all.filter_map(|i| self.left(record, i)).any(bends) {
+            self.own.map(|k| Self { own: k..k + 1, around: k..k + 1 }).collect()
+        } else {
+            vec![self]
+        }
+    }
+
     /// Samples whose contacts are averaged: where there are too few around for a parabola, the middle one stands for all.
     fn averaged(&self) -> usize {
         if self.around.len() < FEWEST { 1 } else { self.own.len() }
@@ -87,6 +110,11 @@ impl Window {
 
 /// Windows of an odd number of samples.
 pub(super) fn windows(record: &Record, longest: f64) -> Vec<Window> {
+    alike(record, longest).into_iter().flat_map(|window| window.apart(record)).collect()
+}
+
+/// The same of samples that touch alike, however contacts bend.
+fn alike(record: &Record, longest: f64) -> Vec<Window> {
     let count = record.times.len();
     let touched = |k: usize| record.contacts[k].iter().map(|contact| (contact.palm, contact.mode));
     let same = |a: usize, b: usize| touched(a).eq(touched(b));
@@ -113,8 +141,10 @@ pub(super) fn windows(record: &Record, longest: f64) -> Vec<Window> {
         let own = from..from + 1 + (from + 1..run.end).take_while(fits).count() / 2 * 2;
         from = own.end;
         let around = own.start.saturating_sub(own.len()).max(run.start)..(own.end + own.len()).min(run.end);
-        // Where nothing is touched there is nothing to average, and the motion follows from that before.
-        if !record.contacts[own.start].is_empty() || alone(own.start) {
+        // Where nothing is touched there is nothing to average, and the motion follows from that at its first sample: a step over the last force and all
+        // of a flight would have that force wane all along.
+        let flies = |k: usize| record.contacts[k].is_empty();
+        if !flies(own.start) || alone(own.start) || !flies(own.start - 1) {
             all.push(Window { own, around });
         }
     }

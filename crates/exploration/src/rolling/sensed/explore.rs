@@ -9,6 +9,7 @@ use super::super::planners::PalmSweep;
 use super::super::predict::Prediction;
 use super::super::track::Track;
 use super::super::workspace::radians;
+use super::friction::of_sliding;
 use super::hands::{Hands, HandsError};
 use super::look::Look;
 use crate::certificate::Certificate;
@@ -152,16 +153,18 @@ impl Loop<'_> {
         let share = self.confidence.share(self.looks).map_err(|error| error.to_string())?;
         let levels = (1.0 - share, self.confidence.level());
         let (contact, spacing) = (self.task.sensors.noise.contact, self.task.roll.spacing);
-        let place = (palms, self.dynamics(&estimate));
+        let place = (palms, self.dynamics(log, &estimate));
         Look::new(log, &estimate, contact, levels, spacing, place).map_err(|error| error.to_string())
     }
 
     /// How the body moves, by its estimate.
-    fn dynamics(&self, estimate: &PlaneEstimate) -> Option<Dynamics> {
-        let known = self.task.sensors.body;
-        let mass = known.or_else(|| PlanarMass::new(estimate.mass.0, estimate.inertia.0).ok())?;
+    fn dynamics(&self, log: &ContactLog, estimate: &PlaneEstimate) -> Option<Dynamics> {
+        let PlaneOptions { body, gravity, ref friction, .. } = self.task.sensors;
+        let mass = body.or_else(|| PlanarMass::new(estimate.mass.0, estimate.inertia.0).ok())?;
         let omega = estimate.states.last()?.omega0;
-        Some(Dynamics { mass, gravity: self.task.sensors.gravity, omega })
+        let known = friction.iter().flatten().copied().reduce(f64::max);
+        let friction = known.unwrap_or_else(|| of_sliding(log, estimate));
+        Some(Dynamics { mass, gravity, omega, friction })
     }
 
     fn certificate(&self) -> Option<Certificate<Direction>> {

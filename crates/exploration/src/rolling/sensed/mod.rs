@@ -5,6 +5,7 @@
 //! slides by the equations of motion.
 
 mod explore;
+mod friction;
 mod hands;
 mod look;
 mod simulated;

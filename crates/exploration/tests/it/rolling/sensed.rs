@@ -22,9 +22,13 @@ fn shape() -> FourierBody {
 }
 
 fn hands(phi: f64, seed: u64) -> SimulatedHands<FourierBody> {
+    rubbing(0.0, phi, seed)
+}
+
+fn rubbing(friction: f64, phi: f64, seed: u64) -> SimulatedHands<FourierBody> {
     let mass = PlanarMass::from_gyration(0.2, 1.1e-3).unwrap();
     let object = PlanarObject { shape: shape(), mass, gravity: GRAVITY };
-    SimulatedHands::new(object, 0.0, 0.4, [0.7, 2.4], phi, RATE).unwrap().with_noise(NOISE, seed)
+    SimulatedHands::new(object, friction, 0.4, [0.7, 2.4], phi, RATE).unwrap().with_noise(NOISE, seed)
 }
 
 fn task(gap: f64) -> SensedTask {
@@ -74,6 +78,26 @@ fn a_gap_is_proven_by_the_estimate_and_the_body_is_between_the_bounds() {
     assert_eq!(steps.last().unwrap().progress, certificate.proven);
     // The same seed gives the same run, to the last bit.
     assert_eq!(run(0.3, 1, &task).1, steps);
+}
+
+/// Palms whose friction is not known: the estimate tells it, and motions are predicted with it.
+#[test]
+fn palms_that_rub_are_planned_for_with_the_friction_that_was_felt() {
+    let (mut hands, mut task) = (rubbing(0.2, 0.3, 1), task(0.3));
+    task.sensors.friction = vec![None; 2];
+    let (mut planner, mut told) = (InformationRate::new(1, 1).per_radian(), Vec::new());
+    let (first, body) = (hands.start_phi(), shape());
+    let ended = explore_sensed(&mut planner, &mut hands, &task, |_, look| {
+        let Some(look) = look else { return };
+        told.extend(look.track.dynamics.map(|dynamics| dynamics.friction));
+        for u in Direction::spread(90).into_iter().filter(|_| look.proven.bounds().is_some()) {
+            let (low, high) = look.proven.support(u);
+            let h = body.jet(u.angle() - first).r;
+            assert!(low <= h && h <= high, "{low} {h} {high} along {}", u.angle());
+        }
+    });
+    assert!(ended.unwrap().short.is_none() && !told.is_empty());
+    assert!(told.iter().all(|friction| (friction - 0.2).abs() < 0.01), "{told:?}");
 }
 
 #[test]

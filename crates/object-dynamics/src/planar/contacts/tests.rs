@@ -24,31 +24,55 @@ fn problem(mass: f64, inertia: f64, contacts: &[TouchingContact]) -> ContactProb
 }
 
 #[test]
-fn two_frictionless_lines_are_the_hinged_pair() {
+fn two_lines_that_the_body_slides_along_are_the_hinged_pair() {
     let shape = FourierBody::new(&[0.04, 0.003, 0.0045, 0.0006], &[0.0, -0.002, 0.001, -0.0008]).unwrap();
     let mass = PlanarMass::new(0.3, 2e-4).unwrap();
     let object = PlanarObject { shape: &shape, mass, gravity: G };
     let pair = PalmPair::new(0.3, 1.2).unwrap();
     let motion = PairRates { rates: [0.7, -0.4], accelerations: [3.0, 5.0] };
-    let (phi0, omega0) = (0.4, 2.0);
-    let reaction = object.reaction(&PalmPairState { pair, motion }, phi0, omega0);
-    let place = BodyPlace { p_WCm: reaction.contact.p_WCm, phi0 };
-    let contacts = [0, 1].map(|i| {
-        let pose = SurfacePose::new(DVec2::ZERO, pair.angles()[i] + if i == 1 { PI } else { 0.0 }).unwrap();
-        let (w_WP, alpha_WP) = (motion.rates[i], motion.accelerations[i]);
-        let palm = SurfaceState { w_WP, alpha_WP, ..pose.at_rest() };
-        let c = SurfaceContact::new(&shape, &place, PalmSurface::Line, &palm, None).unwrap();
-        let rates = c.rates(&palm, reaction.v_WCm, omega0).unwrap();
-        let biases = [rates.gap_bias, c.t.dot(rates.slip_bias)];
-        TouchingContact { n: c.n, t: c.t, b_W: c.b_W, biases, mu: 0.0, sense: 0.0 }
-    });
-    let problem = ContactProblem::new(mass, (DVec2::new(0.0, -G), 0.0), &contacts);
-    let choice = problem.choose(&[slide(0.0); 2], &[]).unwrap();
-    let response = choice.response;
-    assert!((response.alpha0 / reaction.alpha0 - 1.0).abs() < 1e-13, "{response:?} {reaction:?}");
-    for i in 0..2 {
-        assert!((response.forces[i][0] / reaction.forces[i] - 1.0).abs() < 1e-13);
+    let state = PalmPairState { pair, motion };
+    for (mu, phi0, omega0) in [(0.0, 0.4, 2.0), (0.2, 0.4, 2.0), (0.2, 2.1, -3.0), (0.5, 4.0, 1.0)] {
+        let reaction = match mu {
+            0.0 => object.reaction(&state, phi0, omega0),
+            // Of contacts that slip at a natural speed, a creep of a billionth of it takes half its square.
+            mu => object.rubbing_reaction(&state, phi0, omega0, [mu, 1e-9]).unwrap(),
+        };
+        let place = BodyPlace { p_WCm: reaction.contact.p_WCm, phi0 };
+        let contacts = [0, 1].map(|i| {
+            let angle = pair.angles()[i] + if i == 1 { PI } else { 0.0 };
+            let pose = SurfacePose::new(DVec2::ZERO, angle).unwrap();
+            let (w_WP, alpha_WP) = (motion.rates[i], motion.accelerations[i]);
+            let palm = SurfaceState { w_WP, alpha_WP, ..pose.at_rest() };
+            let c = SurfaceContact::new(&shape, &place, PalmSurface::Line, &palm, None).unwrap();
+            let rates = c.rates(&palm, reaction.v_WCm, omega0).unwrap();
+            let biases = [rates.gap_bias, c.t.dot(rates.slip_bias)];
+            let sense = c.slip(&palm, reaction.v_WCm, omega0).dot(c.t).signum();
+            TouchingContact { n: c.n, t: c.t, b_W: c.b_W, biases, mu, sense }
+        });
+        let problem = ContactProblem::new(mass, (DVec2::new(0.0, -G), 0.0), &contacts);
+        let modes = contacts.map(|contact| slide(if mu > 0.0 { contact.sense } else { 0.0 }));
+        let response = problem.respond(&modes).unwrap();
+        assert!((response.alpha0 / reaction.alpha0 - 1.0).abs() < 1e-12, "{response:?} {reaction:?}");
+        for i in 0..2 {
+            assert!((response.forces[i][0] / reaction.forces[i] - 1.0).abs() < 1e-12);
+        }
     }
+}
+
+/// A body that palms squeeze in a narrow wedge with more friction than that lets out jams: there are no forces, and none are told.
+#[test]
+fn a_wedge_that_holds_the_body_by_friction_has_no_sliding_motion() {
+    let shape = FourierBody::new(&[0.04], &[0.0]).unwrap();
+    let object = PlanarObject { shape: &shape, mass: PlanarMass::new(0.3, 2e-4).unwrap(), gravity: G };
+    let state = PalmPairState::at_rest(PalmPair::from_absolute(1.4, 1.8).unwrap());
+    let closing = PairRates { rates: [1.0, -1.0], ..state.motion };
+    let slides = |friction: f64| {
+        object
+            .rubbing_reaction(&PalmPairState { motion: closing, ..state }, 0.0, 0.0, [friction, 1e-9])
+            .is_some()
+    };
+    // The body is pressed out: friction holds it from the tangent of half the wedge on.
+    assert!(slides(0.9 * 0.2_f64.tan()) && !slides(1.1 * 0.2_f64.tan()));
 }
 
 #[test]

@@ -44,11 +44,12 @@ impl State {
             "motion": self.motion,
             "width_m": self.workspace.size,
         });
-        if let Some(Dynamics { mass, gravity, omega }) = self.track.dynamics {
+        if let Some(Dynamics { mass, gravity, omega, friction }) = self.track.dynamics {
             state["angular_velocity_rad_per_s"] = omega.into();
             state["mass_kg"] = mass.mass().into();
             state["inertia_kg_m2"] = mass.inertia().into();
             state["gravity_m_per_s2"] = gravity.into();
+            state["friction"] = friction.into();
         }
         state
     }
@@ -79,7 +80,9 @@ impl State {
             false => {
                 let mass = PlanarMass::new(number("mass_kg")?, number("inertia_kg_m2")?);
                 let (mass, gravity) = (mass.map_err(|e| wrong(e.to_string()))?, number("gravity_m_per_s2")?);
-                Some(Dynamics { mass, gravity, omega: number("angular_velocity_rad_per_s")? })
+                let omega = number("angular_velocity_rad_per_s")?;
+                let friction = if state["friction"].is_null() { 0.0 } else { number("friction")? };
+                Some(Dynamics { mass, gravity, omega, friction })
             }
         };
         let workspace = match dynamics {
