@@ -99,8 +99,7 @@ impl StuckWatch {
     ) -> Option<(RepeatedReading, usize)> {
         let own_force = if axes == SensedAxes::Three { pose.R_WP.conjugate() * force } else { force };
         let longest = |axes: &mut [[Channel; 3]; 2], readings: [DVec3; 2]| {
-            let each =
-                axes.iter_mut().flatten().zip(readings.into_iter().flat_map(|reading| reading.to_array()));
+            let each = axes.iter_mut().flatten().zip(readings.into_iter().flat_map(told));
             each.filter_map(|(axis, of)| axis.take(contact.map(|_| of))).max()
         };
         let force = longest(&mut self.forces, [force, own_force]);
@@ -109,6 +108,12 @@ impl StuckWatch {
         let named = |reading: RepeatedReading| move |run: usize| (reading, run);
         force.map(named(RepeatedReading::Force)).or(contact.map(named(RepeatedReading::Contact)))
     }
+}
+
+/// The axes of a reading, without what is rounding against all of it: across a palm in an axis of the world that has few values, which repeat.
+fn told(reading: DVec3) -> [f64; 3] {
+    let least = ROUNDING * reading.length();
+    reading.to_array().map(|axis| if axis.abs() > least { axis } else { 0.0 })
 }
 
 /// Samples over which a reading of a palm is stuck: from the first repetition to the last.
@@ -218,6 +223,15 @@ mod tests {
         assert_eq!(stuck(|k| right(k - k % 2), 400), []);
         let smooth = |k: usize| ((0.01 * k as f64).sin(), DVec3::new((0.02 * k as f64).cos(), 1.0, 0.0));
         assert_eq!(stuck(|k| smooth(k.min(200)), 400), []);
+        // What is rounding along one axis has few values.
+        let rounded = |k: usize| 5.6e-17 * (2.0 * noise(k + 700)).round();
+        let level =
+            |k: usize| (Some(right(k).1.with_y(rounded(k))), (DVec3::X * right(k).0, SensedAxes::Normal));
+        let mut watch = StuckWatch::default();
+        let found = (0..2000).filter_map(|k| {
+            watch.take(&SurfacePose { p_WP: DVec3::ZERO, R_WP: DQuat::IDENTITY }, level(k).0, level(k).1)
+        });
+        assert_eq!(found.count(), 0);
         // Steps: a sensor of a few of them repeats by chance.
         let steps = |k: usize| ((3.0 * noise(k)).round() + 5.0, right(k).1);
         assert_eq!(stuck(steps, 2000), []);

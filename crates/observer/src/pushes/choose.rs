@@ -1,4 +1,6 @@
-//! Which outline: polygons of three corners and more, and smooth ones, weighed by Schwarz's criterion (1978).
+//! Which outline: polygons of three corners and more, and smooth ones, weighed by their evidence (MacKay, 1992): what they meet
+//! of the touches, and how much of what was known of a shape beforehand they had to give up for it. A corner that one wrong touch asks for is told by that touch
+//! alone, and costs as much as any other.
 
 use super::fit::{Fitted, compared, fit, settled};
 use super::shape::{HIGHEST, MOST_CORNERS, Shape, one_less, thinned};
@@ -49,7 +51,7 @@ pub(super) fn extent(touches: &[[Touch; 2]]) -> (DVec2, f64) {
 pub(super) fn choose(touches: &[[Touch; 2]], radius: f64) -> Option<(Fitted, Vec<OutlineCandidate>)> {
     let (middle, size) = extent(touches);
     let smooth = smooth(touches, radius, size, middle);
-    let by = |f: &Fitted| evidence(f, touches.len());
+    let by = |f: &Fitted| 0.5 * f.misfit;
     let best = smooth.iter().min_by(|a, b| by(a).total_cmp(&by(b)));
     let mut starts = vec![around(touches)];
     starts.extend(best.map(|best| best.line.corners().to_vec()));
@@ -63,13 +65,14 @@ pub(super) fn choose(touches: &[[Touch; 2]], radius: f64) -> Option<(Fitted, Vec
         against: by(f) - least,
     });
     let candidates = candidates.collect();
-    let good = all.into_iter().filter(|f| by(f) - least <= ODDS);
+    let first = all.first()?.clone();
+    if matches!(first.point.shape, Shape::Smooth { .. }) {
+        // A harmonic less is no simpler object, and what is left out stands in no deviation.
+        return Some((first, candidates));
+    }
+    // One push may be no touch: a corner that is there for it alone is not there.
+    let good = all.into_iter().filter(|f| f.against(&first) <= ODDS);
     good.min_by_key(|f| f.point.shape.unknowns()).map(|best| (best, candidates))
-}
-
-/// Negative log evidence to a constant: `(misfit + unknowns ln readings) / 2`.
-fn evidence(fitted: &Fitted, pushes: usize) -> f64 {
-    0.5 * (fitted.misfit + fitted.point.shape.unknowns() as f64 * (2.0 * pushes as f64).ln())
 }
 
 /// No more unknowns than pushes.
@@ -109,7 +112,11 @@ fn polygons(touches: &[[Touch; 2]], radius: f64, size: f64, lines: &[Vec<DVec2>]
         let starts = if corners.len() > 3 { one_less(corners, FARTHEST * size) } else { Vec::new() };
         let fits =
             starts.into_iter().filter_map(|s| compared(&now, touches, radius, size, Shape::Polygon(s)));
-        next = fits.min_by(least).and_then(|best| settled(best, touches, radius, size));
+        let mut fits: Vec<Fitted> = fits.collect();
+        fits.sort_by(least);
+        // One that ends in no outline as it goes on stands for itself.
+        let rough = fits.first().cloned();
+        next = fits.into_iter().find_map(|fit| settled(fit, touches, radius, size)).or(rough);
         all.push(now);
     }
     all

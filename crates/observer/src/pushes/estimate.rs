@@ -141,11 +141,13 @@ fn results(
 ) -> Vec<PushResult> {
     let one = |i: usize| {
         let steps = paths[i];
+        // Whatever clock the log has.
+        let began = found[i].push.samples.first().map_or(0.0, |sample| sample.t);
         let mut instants = Vec::new();
         for (window, odds) in cut[i].iter().zip(&learned.odds[i]) {
             for step in &steps[window.steps[0]..window.steps[1]] {
                 instants.push(PushInstant {
-                    t: step.t,
+                    t: step.t - began,
                     pose: step.pose,
                     point: step.point,
                     ratio: step.ratio,

@@ -4,16 +4,21 @@ use super::shape::{MOST, Shape};
 use super::touches::Touch;
 use crate::least_squares::{Fit, LeastSquares, LevenbergMarquardt, NormalEquations};
 use contact_kinematics::is_stopped;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Cholesky, SMatrix, SVector};
 use object_dynamics::pushing::{ClosedLine, Nearest};
 
 /// Unknowns of the shape and two times.
 pub(super) const UNKNOWNS: usize = MOST + 2;
 type Vector = SVector<f64, UNKNOWNS>;
+type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Degrees of freedom of the distribution of the residuals: four give an outlier of five deviations a thousand times the odds that a
 /// normal one would.
 const STUDENT: f64 = 4.0;
+/// Its density where it is largest, for four degrees of freedom.
+const AT_TOUCH: f64 = 0.375;
+/// Share of pushes that are no touch of the outline, as far as evidence goes.
+const STRAY: f64 = 0.02;
 /// Deviation of the angle between force and inward normal, rad: coefficients of friction up to 0.7 lie within two of them.
 const ANGLE: f64 = 0.35;
 /// Deviation of what clocks and the end of the record may be off, s: machines that log each by its own clock differ by as much.
@@ -21,7 +26,9 @@ pub(super) const CLOCK: f64 = 0.1;
 /// Prior of the shape's unknowns about the start, in sizes of the object: it holds what no touch tells.
 const LOOSE: f64 = 3.0;
 /// Prior of harmonic `k`, in sizes over `k`.
-const HARMONIC: f64 = 0.5;
+pub(super) const HARMONIC: f64 = 0.5;
+/// Readings of each kind that a fit must leave free.
+const FREE: f64 = 1.0;
 /// Step of the differences by which rows are taken, in sizes of the object.
 const STEP: f64 = 1e-6;
 /// Rounds in which deviations and shape are found in turn: of a fit that is kept, and of one that is only compared.
@@ -60,8 +67,22 @@ pub(super) struct Fitted {
     pub(super) point: Point,
     pub(super) line: ClosedLine,
     pub(super) deviations: [f64; 2],
-    /// Twice the negative logarithm of the likelihood, to a constant.
+    /// Shares of the readings of each kind that the fit leaves free.
+    free: [f64; 2],
+    /// Twice the negative logarithm of the evidence, to a constant.
     pub(super) misfit: f64,
+    /// What of it each push costs.
+    of_pushes: Vec<f64>,
+}
+
+impl Fitted {
+    /// Negative logarithm of the evidence over that of another fit, but for the push that speaks most for the other, as far as one that is no touch is to
+    /// be expected among so many.
+    pub(super) fn against(&self, other: &Self) -> f64 {
+        let most =
+            self.of_pushes.iter().zip(&other.of_pushes).map(|(own, other)| own - other).fold(0.0, f64::max);
+        0.5 * (self.misfit - other.misfit - most * (STRAY * self.of_pushes.len() as f64).min(1.0))
+    }
 }
 
 impl<'a> Problem<'a> {
@@ -123,6 +144,56 @@ impl<'a> Problem<'a> {
         Some(all)
     }
 
+    /// Residuals and how they change with the unknowns.
+    fn rows(&self, point: &Point) -> Option<(Vec<Vector>, Vec<f64>)> {
+        let residuals = self.residuals(point)?;
+        let mut rows = vec![Vector::zeros(); residuals.len()];
+        for j in (0..point.shape.unknowns()).chain(MOST..UNKNOWNS) {
+            let shifted = |by: f64| self.residuals(&self.step(point, |k| if k == j { by } else { 0.0 }));
+            let (above, below) = (shifted(STEP)?, shifted(-STEP)?);
+            for (row, (a, b)) in rows.iter_mut().zip(above.iter().zip(&below)) {
+                row[j] = (a - b) / (2.0 * STEP);
+            }
+        }
+        Some((rows, residuals))
+    }
+
+    /// What the readings tell beside how well they are met: shares of those of each kind that are left free, and twice the logarithm of by how much
+    /// they narrow what was known of the shape beforehand. None where nothing is left free to tell how far they are off.
+    fn told(&self, point: &Point) -> Option<([f64; 2], f64)> {
+        let (rows, _) = self.rows(point)?;
+        let (readings, prior) = rows.split_at(4 * self.touches.len());
+        let of = |rows: &[Vector]| rows.iter().fold(Matrix::zeros(), |sum, row| sum + row * row.transpose());
+        let used = point.shape.unknowns();
+        let told = of(readings);
+        let mut all = told + of(prior);
+        (used..MOST).for_each(|j| all[(j, j)] += 1.0);
+        let inverse = Cholesky::new(all)?.inverse();
+        let count = self.touches.len() as f64;
+        let free = [0, 1].map(|i| {
+            let taken: f64 = readings.iter().skip(i).step_by(4).map(|row| row.dot(&(inverse * row))).sum();
+            1.0 - taken / count
+        });
+        let width = Vector::from_fn(|j, _| if j < used { point.shape.beforehand(j) } else { 0.0 });
+        let wide = Matrix::identity() + Matrix::from_diagonal(&width) * told * Matrix::from_diagonal(&width);
+        let narrowed = Cholesky::new(wide)?.l_dirty().diagonal().map(f64::ln).sum();
+        free.iter().all(|free| free * count > FREE).then_some((free, 2.0 * narrowed))
+    }
+
+    /// The cost of each push at a point, and of all else, where a push may be no touch of this outline at all and its finger anywhere: going after one
+    /// gains no more than the odds of that.
+    fn with_strays(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
+        let residuals = self.residuals(point)?;
+        let (readings, prior) = residuals.split_at(4 * self.touches.len());
+        let [mean, half] = self.deviations.map(|d| d / (AT_TOUCH * self.size));
+        let stray = STRAY * mean * half / (1.0 - STRAY);
+        let square = |of: &[f64]| of.iter().map(|r| r * r).sum::<f64>();
+        let one = |of: &[f64]| {
+            2.0 * (stray.ln_1p() - ((-0.5 * square(&of[..2])).exp() + stray).ln()) + square(&of[2..])
+        };
+        Some((readings.chunks_exact(4).map(one).collect(), square(prior)))
+    }
+
     fn step(&self, point: &Point, step: impl Fn(usize) -> f64) -> Point {
         Point {
             shape: point.shape.moved(|k| step(k) * self.size),
@@ -143,20 +214,11 @@ impl LeastSquares<UNKNOWNS> for Problem<'_> {
         if is_stopped() {
             return None;
         }
-        let residuals = self.residuals(point)?;
-        let used = point.shape.unknowns();
-        let mut rows = vec![Vector::zeros(); residuals.len()];
-        for j in (0..used).chain(MOST..UNKNOWNS) {
-            let shifted = |by: f64| self.residuals(&self.step(point, |k| if k == j { by } else { 0.0 }));
-            let (above, below) = (shifted(STEP)?, shifted(-STEP)?);
-            for (row, (a, b)) in rows.iter_mut().zip(above.iter().zip(&below)) {
-                row[j] = (a - b) / (2.0 * STEP);
-            }
-        }
+        let (rows, residuals) = self.rows(point)?;
         let mut normal = NormalEquations::default();
         rows.iter().zip(&residuals).for_each(|(row, r)| normal.add(row, *r));
         // Unknowns that this shape does not have stay where they are.
-        for j in used..MOST {
+        for j in point.shape.unknowns()..MOST {
             normal.information[(j, j)] += 1.0;
         }
         Some(normal)
@@ -207,18 +269,22 @@ fn in_turn(mut problem: Problem, mut point: Point, rounds: usize) -> Option<Fitt
             return None;
         }
         let parts = problem.parts(&line, point.times);
+        let (free, _) = problem.told(&point)?;
         let fresh = [0, 1].map(|i| {
             let of: Vec<f64> = parts.iter().map(|p| p[i]).collect();
+            let scale = scale(&of, problem.deviations[i]) / free[i].sqrt();
             // Never much smaller at once: then outliers of the first shape would be there for good.
-            scale(&of, problem.deviations[i]).max(0.3 * problem.deviations[i]).max(LEAST)
+            scale.max(0.3 * problem.deviations[i]).max(LEAST)
         });
         let settled = (0..2).all(|i| (fresh[i] / problem.deviations[i]).ln().abs() < 0.01);
         problem.deviations = fresh;
         if settled || round + 1 == rounds {
-            let cost = problem.cost(&point)?;
+            let (of_pushes, of_rest) = problem.with_strays(&point)?;
             let logs: f64 = fresh.iter().map(|d| 2.0 * (d / size).ln()).sum();
-            let misfit = cost + touches.len() as f64 * logs;
-            return Some(Fitted { point, line, deviations: fresh, misfit });
+            let (free, narrowed) = problem.told(&point)?;
+            let of_rest = of_rest + touches.len() as f64 * logs + narrowed;
+            let misfit = of_pushes.iter().sum::<f64>() + of_rest;
+            return Some(Fitted { point, line, deviations: fresh, free, misfit, of_pushes });
         }
     }
     None
@@ -226,12 +292,7 @@ fn in_turn(mut problem: Problem, mut point: Point, rounds: usize) -> Option<Fitt
 
 /// What the touches tell of the unknowns, by how they scatter: `(mean psi')^2 / mean psi^2` for each residual, `psi` being half the slope of
 /// the robust cost (Huber, Robust Statistics, 1981, section 6.3).
-pub(super) fn information(
-    fitted: &Fitted,
-    touches: &[[Touch; 2]],
-    radius: f64,
-    size: f64,
-) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
+pub(super) fn information(fitted: &Fitted, touches: &[[Touch; 2]], radius: f64, size: f64) -> Option<Matrix> {
     let mut problem = Problem::new(touches, radius, size, fitted.deviations, fitted.point.shape.clone());
     let parts = problem.parts(&fitted.line, fitted.point.times);
     let weight = |i: usize| {
@@ -241,7 +302,7 @@ pub(super) fn information(
             slope += (STUDENT + 1.0) * (STUDENT - z * z) / (sum * sum);
             square += ((STUDENT + 1.0) * z / sum).powi(2);
         }
-        slope.max(0.0) / (square * parts.len() as f64).sqrt()
+        slope.max(0.0) / (square * parts.len() as f64).sqrt() * fitted.free[i].sqrt()
     };
     problem.plain = Some([weight(0), weight(1)]);
     problem.linearise(&fitted.point).map(|normal| normal.information)

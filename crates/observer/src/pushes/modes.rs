@@ -74,7 +74,9 @@ pub(super) fn windows(steps: &[PathStep], speed: f64) -> Vec<Window> {
         let normal: f64 = part.iter().map(|s| s.normal_force).sum();
         let friction: f64 = part.iter().map(|s| s.normal_force * s.ratio).sum();
         let lasted = steps[to].t - steps[from].t;
-        if part.iter().all(|s| s.normal_force > LOADED * median) && lasted > 0.5 * WINDOW {
+        // Where the outline is wrong the median may be below zero: a force that does not press has no ratio.
+        let loaded = LOADED * median.max(0.0);
+        if part.iter().all(|s| s.normal_force > loaded) && lasted > 0.5 * WINDOW {
             all.push(Window {
                 start: steps[from].t,
                 end: steps[to].t,
@@ -142,6 +144,22 @@ mod tests {
 
     fn window(ratio: f64, slip: f64) -> Window {
         Window { start: 0.0, end: 0.1, ratio, slip, steps: [0, 1] }
+    }
+
+    /// Where the outline is wrong most of a push may pull, and some of it not touch at all: that has no ratio.
+    #[test]
+    fn what_does_not_press_is_in_no_window() {
+        let step = |k: usize, normal_force: f64| PathStep {
+            t: 0.01 * k as f64,
+            pose: object_dynamics::pushing::PushPose::default(),
+            point: glam::DVec2::ZERO,
+            ratio: 0.0 / normal_force.max(0.0),
+            normal_force,
+            slipped: 0.0,
+        };
+        let all = |force: fn(usize) -> f64| (0..100).map(|k| step(k, force(k))).collect::<Vec<_>>();
+        assert!(windows(&all(|k| if k < 40 { 0.0 } else { -1.0 }), 0.01).is_empty());
+        assert!(!windows(&all(|_| 1.0), 0.01).is_empty());
     }
 
     #[test]

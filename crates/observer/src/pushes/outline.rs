@@ -64,7 +64,7 @@ pub struct PushedOutline {
     pub candidates: Vec<OutlineCandidate>,
 }
 
-/// Covariance of the scaled unknowns, widened for those that took part in the residuals' deviation.
+/// Covariance of the scaled unknowns.
 pub(super) fn covariance(
     fitted: &Fitted,
     touches: &[[Touch; 2]],
@@ -72,9 +72,8 @@ pub(super) fn covariance(
     size: f64,
 ) -> SMatrix<f64, UNKNOWNS, UNKNOWNS> {
     let inverse = information(fitted, touches, radius, size).and_then(Cholesky::new).map(|c| c.inverse());
-    let (readings, unknowns) = (2.0 * touches.len() as f64, fitted.point.shape.unknowns() as f64);
-    // Where nothing is left over, all is open: by the size of the object.
-    inverse.unwrap_or_else(SMatrix::identity) * (WIDER * readings / (readings - unknowns).max(1.0))
+    // Where nothing is told, all is open: by the size of the object.
+    inverse.unwrap_or_else(SMatrix::identity) * WIDER
 }
 
 impl PushedOutline {

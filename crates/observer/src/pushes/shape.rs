@@ -1,5 +1,6 @@
 //! Outlines with few unknowns: polygons by their corners, smooth ones by the harmonics of their radius about a fixed point.
 
+use super::fit::HARMONIC;
 use glam::DVec2;
 use object_dynamics::pushing::ClosedLine;
 
@@ -28,6 +29,14 @@ impl Shape {
         match self {
             Self::Polygon(corners) => 2 * corners.len(),
             Self::Smooth { coefficients, .. } => coefficients.len(),
+        }
+    }
+
+    /// What is known of an unknown beforehand, in sizes of the object: a corner is somewhere on it.
+    pub(super) fn beforehand(&self, unknown: usize) -> f64 {
+        match self {
+            Self::Smooth { .. } if unknown > 0 => HARMONIC / unknown.div_ceil(2) as f64,
+            _ => 1.0,
         }
     }
 

@@ -97,3 +97,47 @@ fn what_tells_nothing_is_refused() {
     let told = estimate_pushes(&PushLog::new(pushes).unwrap(), 3e-3).unwrap();
     assert_eq!(told.untouched, [(2, NoTouch::NoForce), (4, NoTouch::FromTheStart)]);
 }
+
+/// A push whose first pose is wrong by 6 mm is one that is wrong, wherever it stands: it does not make a corner of the object.
+#[test]
+fn one_push_that_is_wrong_makes_no_corner() {
+    let log = made(&rectangle(), 30, PushDisturbances::default()).log;
+    for wrong in [3, 11, 19, 26] {
+        let mut pushes = log.pushes().to_vec();
+        let push = &mut pushes[wrong];
+        let way = push.samples[push.samples.len() - 1].finger - push.samples[0].finger;
+        push.before.p_WO += way.normalize() * 6e-3;
+        let told = estimate_pushes(&PushLog::new(pushes).unwrap(), 3e-3).unwrap();
+        assert_eq!(told.outline.corners.len(), 4, "{wrong}");
+    }
+}
+
+/// Of few pushes an outline of as many unknowns leaves nothing; what is told is held to how far it may be off all the same.
+#[test]
+fn few_pushes_do_not_tell_an_outline_to_hundredths_of_a_millimetre() {
+    let scene = rectangle();
+    let log = made(&scene, 40, PushDisturbances::default()).log;
+    for pushes in log.pushes().chunks(10) {
+        let told = estimate_pushes(&PushLog::new(pushes.to_vec()).unwrap(), 3e-3).unwrap();
+        let touched = told.outline.points.iter().filter(|p| p.to_touch == 0.0);
+        let off = touched.map(|p| (scene.outline.nearest(p.point).distance / p.deviation).abs());
+        let most = off.fold(0.0, f64::max);
+        assert!(most < 5.0, "{most} deviations off as {}", told.outline.name);
+    }
+}
+
+/// Whatever a clock begins at, times are since the push began.
+#[test]
+fn times_count_from_the_beginning_of_each_push() {
+    let log = made(&rectangle(), 12, PushDisturbances::default()).log;
+    let mut pushes = log.pushes().to_vec();
+    // In steps that such a clock can tell exactly.
+    pushes.iter_mut().flat_map(|push| &mut push.samples).for_each(|s| s.t = (s.t * 4096.0).round() / 4096.0);
+    let own = estimate_pushes(&PushLog::new(pushes.clone()).unwrap(), 3e-3).unwrap();
+    pushes.iter_mut().flat_map(|push| &mut push.samples).for_each(|s| s.t += 1.7e9);
+    let told = estimate_pushes(&PushLog::new(pushes).unwrap(), 3e-3).unwrap();
+    let times = |told: &PushesEstimate| -> Vec<f64> {
+        told.pushes.iter().flat_map(|push| push.instants.iter().map(|instant| instant.t)).collect()
+    };
+    assert_eq!(times(&own), times(&told));
+}

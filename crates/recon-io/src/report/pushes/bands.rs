@@ -8,8 +8,9 @@ use std::fmt::Write as _;
 /// Height of all rows together, px, and the most and the least of one.
 const ALL: f64 = 440.0;
 const ROW: [f64; 2] = [3.0, 18.0];
-/// Names of rows, at most.
+/// Names of rows, and of times, at most.
 const NAMES: usize = 12;
+const TIMES: f64 = 20.0;
 
 /// The rows as one SVG element.
 pub(super) fn bands(told: &PushesEstimate) -> String {
@@ -40,7 +41,7 @@ pub(super) fn bands(told: &PushesEstimate) -> String {
             );
         }
     }
-    for t in 0..=last as u32 {
+    for t in (0..=last as u32).step_by((last / TIMES).ceil().max(1.0) as usize) {
         let (x, y) = (place(f64::from(t)), bottom + 14.0);
         let _ = writeln!(out, "<text x=\"{x}%\" y=\"{y:.1}\" text-anchor=\"middle\">{t}</text>");
     }
