@@ -75,8 +75,9 @@ pub(super) fn mode_odds(known: &Known, noise: &ContactNoiseLevel, units: &Units)
         }
         let slips = known.slips(palm);
         let mut own = vec![ContactSeen::Off; record.times.len()];
-        contacts()
-            .for_each(|(k, contact)| own[k] = ContactSeen::Read(reading(contact, slips[k], units.speed)));
+        contacts().for_each(|(k, contact)| {
+            own[k] = ContactSeen::Read(reading(contact, slips[k], (units.speed, record.deviation)))
+        });
         palms.push(palm);
         seen.push(own);
     }
@@ -102,8 +103,13 @@ fn along_plane(slip: ContactSlip, contact: &Contact, speed: f64) -> ContactSlip 
     ContactSlip { covariance: slip.covariance + across * across.transpose(), ..slip }
 }
 
-/// What is read of a contact with its slip; `speed` is the natural one, m/s.
-pub(super) fn reading(contact: &Contact, slip: Option<ContactSlip>, speed: f64) -> ContactReading {
+/// What is read of a contact with its slip; `speed` is the natural one, m/s, and `place` the deviation of a contact, m: the force is taken apart by the
+/// normal there, which on a curved palm is off with it.
+pub(super) fn reading(
+    contact: &Contact,
+    slip: Option<ContactSlip>,
+    (speed, place): (f64, f64),
+) -> ContactReading {
     let [a, b] = contact.tangents();
     let slip = slip.map(|slip| if contact.planar { along_plane(slip, contact, speed) } else { slip });
     ContactReading {
@@ -111,6 +117,7 @@ pub(super) fn reading(contact: &Contact, slip: Option<ContactSlip>, speed: f64) 
         friction: Vector2::new(contact.f.dot(a), contact.f.dot(b)),
         force_deviation: contact
             .f_deviation
+            .hypot(contact.turning(place) * contact.f.length())
             .max(LEAST_FORCE * contact.f.length())
             .max(f64::MIN_POSITIVE.sqrt()),
         slip,

@@ -21,7 +21,7 @@ const LEAST: f64 = 0.01;
 #[derive(Clone, Copy, Default)]
 struct Ratio {
     value: f64,
-    /// Square of the standard deviation of each axis of the force as a share of it.
+    /// Square of the standard deviation of each axis of the force as a share of it, with what the normal is off by.
     share: f64,
 }
 
@@ -119,7 +119,8 @@ fn ratios(record: &Record, palm: usize) -> Vec<Option<Ratio>> {
             return Ratio { value: f64::INFINITY, share: 0.0 };
         }
         let value = contact.f.reject_from_normalized(contact.n).length() / normal;
-        Ratio { value, share: contact.f_deviation.powi(2) / contact.f.length_squared() }
+        let turned = contact.turning(record.deviation);
+        Ratio { value, share: contact.f_deviation.powi(2) / contact.f.length_squared() + turned * turned }
     };
     let at = |contacts: &Vec<Contact>| contacts.iter().find(|contact| contact.palm == palm).map(of);
     record.contacts.iter().map(at).collect()

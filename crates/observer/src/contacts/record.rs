@@ -145,6 +145,11 @@ impl Contact {
         if self.planar { [self.n.cross(DVec3::Y), DVec3::Y] } else { self.n.any_orthonormal_pair().into() }
     }
 
+    /// Angle in rad by which noise of its place of the given deviation (m) turns the normal of a curved palm, in the axis that turns more.
+    pub(super) fn turning(&self, deviation: f64) -> f64 {
+        deviation * self.tangents().into_iter().map(|t| (self.shape * t).length()).fold(0.0, f64::max)
+    }
+
     /// Directions along the palm that it may move in.
     pub(super) fn freedoms(&self) -> usize {
         if self.planar { 1 } else { 2 }

@@ -81,7 +81,7 @@ impl Modes {
             let slip = motion(*palm).and_then(|front| slip(contact, &front.moving(), &self.options.noise));
             // Of a friction that nobody knows forces alone take any ratio that stays the same for sliding.
             *seen = match slip.is_some() || self.told.friction_told(i).is_some() {
-                true => ContactSeen::Read(reading(contact, slip, self.speed)),
+                true => ContactSeen::Read(reading(contact, slip, (self.speed, self.options.noise.contact))),
                 false => ContactSeen::Touches,
             };
         }
