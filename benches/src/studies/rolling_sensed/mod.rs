@@ -99,8 +99,11 @@ pub(crate) fn main() -> Result<(), Failure> {
     if asked("horizon") {
         lookahead(&seeds)?;
     }
-    if asked("others") {
-        others(&seeds)?;
+    if asked("coarser") {
+        others(&seeds, "Coarser sensors", &[(1e-3, 1e-2, 0.0, 25), (1e-2, 1e-2, 0.0, 25)])?;
+    }
+    if asked("friction") {
+        others(&seeds, "Friction", &[(1e-3, 1e-3, 0.2, 12)])?;
     }
     println!("{}", include_str!("outro.md").trim_end());
     Ok(())
@@ -212,14 +215,18 @@ fn lookahead(seeds: &std::ops::Range<u64>) -> Result<(), Why> {
     Ok(())
 }
 
-fn others(seeds: &std::ops::Range<u64>) -> Result<(), Why> {
+/// Noise of contacts and forces, friction, and motions at most.
+type Other = (f64, f64, f64, usize);
+
+fn others(seeds: &std::ops::Range<u64>, title: &str, of: &[Other]) -> Result<(), Why> {
     println!(
-        "## Coarser sensors, and friction\n\nGap per radian, 1 ahead, radians of palm motion.\n\n| noise of contacts, forces; friction | {HEADS}\n{LINE}"
+        "## {title}\n\nGap per radian, 1 ahead, radians of palm motion.\n\n| noise of contacts, forces; friction; motions at most | {HEADS}\n{LINE}"
     );
     let make = |s: u64| -> Box<dyn RollPlanner> { Box::new(InformationRate::new(s, 1).per_radian()) };
-    for (contact, force, friction) in [(1e-3, 1e-2, 0.0), (1e-2, 1e-2, 0.0), (1e-3, 1e-3, 0.2)] {
-        let runs = all(&make, seeds.clone(), Setting { contact, force, friction, ..FINE })?;
-        println!("{}", row(&format!("{} %, {} %; {friction}", 100.0 * contact, 100.0 * force), &runs, 0));
+    for &(contact, force, friction, motions) in of {
+        let of = Setting { contact, force, friction, motions, ..FINE };
+        let name = format!("{} %, {} %; {friction}; {motions}", 100.0 * contact, 100.0 * force);
+        println!("{}", row(&name, &all(&make, seeds.clone(), of)?, 0));
     }
     println!();
     Ok(())
