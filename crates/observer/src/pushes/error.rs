@@ -30,6 +30,17 @@ pub enum PushesError {
         /// The first that did not, and why.
         first: Option<(u32, NoTouch)>,
     },
+    /// Forces that do not push.
+    #[error(
+        "in {against} of {pushes} pushes the force does not push the object: the finger, or the object, goes against it or not at all; look at the sign and the \
+         axes of the force, at the unit and the sense of the poses' angle, and which pose is the one before the push"
+    )]
+    Against {
+        /// Pushes in which it does not.
+        against: usize,
+        /// Pushes that touched.
+        pushes: usize,
+    },
     /// No outline fits.
     #[error(
         "no closed outline goes through the {touches} touches; look whether poses and finger are in one frame, in m and rad"

@@ -16,6 +16,8 @@ use glam::DVec2;
 use nalgebra::SMatrix;
 use object_dynamics::pushing::{Nearest, PushLog};
 
+/// Share of pushes in which the force may go against the motion: poses and clocks that are off turn a short push about.
+const AGAINST: f64 = 0.25;
 /// Directions of normals that count as one place: of a polygon most often a face each.
 const PLACES: usize = 12;
 
@@ -38,6 +40,10 @@ pub fn estimate_pushes(log: &PushLog, finger_radius: f64) -> Result<PushesEstima
     if found.len() < FEWEST_TOUCHED {
         let (touched, pushes) = (found.len(), log.pushes().len());
         return Err(PushesError::TooFew { touched, pushes, first: untouched.first().copied() });
+    }
+    let against = found.iter().filter(|touched| !touched.is_pushed()).count();
+    if against as f64 > AGAINST * found.len() as f64 {
+        return Err(PushesError::Against { against, pushes: found.len() });
     }
     let compliance = quantile(found.iter().map(|t| t.compliance).collect(), 0.5);
     let touches: Vec<[Touch; 2]> = found.iter().map(|t| t.touches(compliance)).collect();

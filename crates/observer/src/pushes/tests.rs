@@ -141,3 +141,23 @@ fn times_count_from_the_beginning_of_each_push() {
     };
     assert_eq!(times(&own), times(&told));
 }
+
+/// Work is done at the finger and on the object: forces of the wrong sign or with their axes exchanged, poses in the wrong order, and an object that
+/// never moves are no pushes.
+#[test]
+fn forces_that_do_not_push_are_refused() {
+    let log = made(&rectangle(), 20, PushDisturbances::default()).log;
+    let told = |change: &dyn Fn(&mut object_dynamics::pushing::Push)| {
+        let mut pushes = log.pushes().to_vec();
+        pushes.iter_mut().for_each(change);
+        estimate_pushes(&PushLog::new(pushes).unwrap(), 3e-3)
+    };
+    assert!(told(&|_| ()).is_ok());
+    let refused = |change: &dyn Fn(&mut object_dynamics::pushing::Push)| {
+        assert!(matches!(told(change), Err(PushesError::Against { pushes: 20, .. })));
+    };
+    refused(&|push| push.samples.iter_mut().for_each(|s| s.force = -s.force));
+    refused(&|push| push.samples.iter_mut().for_each(|s| s.force = DVec2::new(s.force.y, s.force.x)));
+    refused(&|push| std::mem::swap(&mut push.before, &mut push.after));
+    refused(&|push| push.after = push.before);
+}

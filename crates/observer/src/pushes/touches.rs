@@ -72,6 +72,16 @@ pub(super) struct Touched<'a> {
 }
 
 impl<'a> Touched<'a> {
+    /// Whether force and motion go along with each other: what pushes over a table does work, at the finger and on the object, which friction takes.
+    pub(super) fn is_pushed(&self) -> bool {
+        let force = (self.from..=self.to).map(|k| self.force(k)).sum::<DVec2>();
+        let (first, last) = (self.finger(self.from), self.finger(self.to));
+        // The place on the object at which the finger was last, as it lay before.
+        let before = &self.push.before;
+        let place = before.p_WO + before.turn(self.push.after.to_object(last));
+        force.dot(last - first) > 0.0 && force.dot(last - place) > 0.0
+    }
+
     pub(super) fn find(push: &'a Push) -> Result<Self, NoTouch> {
         let samples = &push.samples;
         let high = quantile(samples.iter().map(|s| s.force.length()).collect(), 0.75);

@@ -162,8 +162,9 @@ impl Loop<'_> {
         let PlaneOptions { body, gravity, ref friction, .. } = self.task.sensors;
         let mass = body.or_else(|| PlanarMass::new(estimate.mass.0, estimate.inertia.0).ok())?;
         let omega = estimate.states.last()?.omega0;
-        let known = friction.iter().flatten().copied().reduce(f64::max);
-        let friction = known.unwrap_or_else(|| of_sliding(log, estimate));
+        let known: Option<Vec<f64>> = friction.iter().copied().collect();
+        let friction = known.and_then(|known| known.into_iter().reduce(f64::max));
+        let friction = friction.unwrap_or_else(|| of_sliding(log, estimate));
         Some(Dynamics { mass, gravity, omega, friction })
     }
 

@@ -8,8 +8,8 @@ use observer::planar::PlaneEstimate;
 /// The median ratio of friction to normal force where contacts slide, by the modes of the estimate; zero where none has slid.
 pub(super) fn of_sliding(log: &ContactLog, estimate: &PlaneEstimate) -> f64 {
     let mut ratios = Vec::new();
-    for (k, sample) in log.samples().iter().enumerate() {
-        let turned = DVec2::from_angle(estimate.states[k].phi0);
+    for (k, (sample, state)) in log.samples().iter().zip(&estimate.states).enumerate() {
+        let turned = DVec2::from_angle(state.phi0);
         for (i, palm) in sample.palms.iter().enumerate() {
             let Some(contact) = estimate.contacts[i][k] else { continue };
             let inward = -turned.rotate(contact.normal);
