@@ -101,11 +101,13 @@ fn smooth(touches: &[[Touch; 2]], radius: f64, size: f64, centre: DVec2) -> Vec<
 
 /// From closed lines of many corners on, each with one corner less.
 fn polygons(touches: &[[Touch; 2]], radius: f64, size: f64, lines: &[Vec<DVec2>]) -> Vec<Fitted> {
-    let most = (3..=MOST_CORNERS).rev().find(|n| allowed(2 * n, touches)).unwrap_or(3);
-    let first =
-        lines.iter().filter_map(|line| fit(touches, radius, size, Shape::Polygon(thinned(line, most))));
     let least = |a: &Fitted, b: &Fitted| a.misfit.total_cmp(&b.misfit);
-    let mut next = first.min_by(least);
+    let of = |corners: usize| {
+        let thin = |line: &Vec<DVec2>| fit(touches, radius, size, Shape::Polygon(thinned(line, corners)));
+        lines.iter().filter_map(thin).min_by(least)
+    };
+    // From as many corners on as the touches leave some of themselves free of.
+    let mut next = (3..=MOST_CORNERS).rev().filter(|n| allowed(2 * n, touches)).find_map(of);
     let mut all: Vec<Fitted> = Vec::new();
     while let Some(now) = next {
         let Shape::Polygon(corners) = &now.point.shape else { break };

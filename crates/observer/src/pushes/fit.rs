@@ -4,21 +4,17 @@ use super::shape::{MOST, Shape};
 use super::touches::Touch;
 use crate::least_squares::{Fit, LeastSquares, LevenbergMarquardt, NormalEquations};
 use contact_kinematics::is_stopped;
-use nalgebra::{Cholesky, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 use object_dynamics::pushing::{ClosedLine, Nearest};
 
 /// Unknowns of the shape and two times.
 pub(super) const UNKNOWNS: usize = MOST + 2;
-type Vector = SVector<f64, UNKNOWNS>;
-type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+pub(super) type Vector = SVector<f64, UNKNOWNS>;
+pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Degrees of freedom of the distribution of the residuals: four give an outlier of five deviations a thousand times the odds that a
 /// normal one would.
 const STUDENT: f64 = 4.0;
-/// Its density where it is largest, for four degrees of freedom.
-const AT_TOUCH: f64 = 0.375;
-/// Share of pushes that are no touch of the outline, as far as evidence goes.
-const STRAY: f64 = 0.02;
 /// Deviation of the angle between force and inward normal, rad: coefficients of friction up to 0.7 lie within two of them.
 const ANGLE: f64 = 0.35;
 /// Deviation of what clocks and the end of the record may be off, s: machines that log each by its own clock differ by as much.
@@ -27,8 +23,6 @@ pub(super) const CLOCK: f64 = 0.1;
 const LOOSE: f64 = 3.0;
 /// Prior of harmonic `k`, in sizes over `k`.
 pub(super) const HARMONIC: f64 = 0.5;
-/// Readings of each kind that a fit must leave free.
-const FREE: f64 = 1.0;
 /// Step of the differences by which rows are taken, in sizes of the object.
 const STEP: f64 = 1e-6;
 /// Rounds in which deviations and shape are found in turn: of a fit that is kept, and of one that is only compared.
@@ -68,21 +62,11 @@ pub(super) struct Fitted {
     pub(super) line: ClosedLine,
     pub(super) deviations: [f64; 2],
     /// Shares of the readings of each kind that the fit leaves free.
-    free: [f64; 2],
+    pub(super) free: [f64; 2],
     /// Twice the negative logarithm of the evidence, to a constant.
     pub(super) misfit: f64,
     /// What of it each push costs.
-    of_pushes: Vec<f64>,
-}
-
-impl Fitted {
-    /// Negative logarithm of the evidence over that of another fit, but for the push that speaks most for the other, as far as one that is no touch is to
-    /// be expected among so many.
-    pub(super) fn against(&self, other: &Self) -> f64 {
-        let most =
-            self.of_pushes.iter().zip(&other.of_pushes).map(|(own, other)| own - other).fold(0.0, f64::max);
-        0.5 * (self.misfit - other.misfit - most * (STRAY * self.of_pushes.len() as f64).min(1.0))
-    }
+    pub(super) of_pushes: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
@@ -113,7 +97,7 @@ impl<'a> Problem<'a> {
     }
 
     /// All residuals at a point; none where the shape is none.
-    fn residuals(&self, point: &Point) -> Option<Vec<f64>> {
+    pub(super) fn residuals(&self, point: &Point) -> Option<Vec<f64>> {
         let line = point.shape.line()?;
         let mut all = Vec::with_capacity(4 * self.touches.len() + UNKNOWNS);
         for pair in self.touches {
@@ -145,7 +129,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Residuals and how they change with the unknowns.
-    fn rows(&self, point: &Point) -> Option<(Vec<Vector>, Vec<f64>)> {
+    pub(super) fn rows(&self, point: &Point) -> Option<(Vec<Vector>, Vec<f64>)> {
         let residuals = self.residuals(point)?;
         let mut rows = vec![Vector::zeros(); residuals.len()];
         for j in (0..point.shape.unknowns()).chain(MOST..UNKNOWNS) {
@@ -156,42 +140,6 @@ impl<'a> Problem<'a> {
             }
         }
         Some((rows, residuals))
-    }
-
-    /// What the readings tell beside how well they are met: shares of those of each kind that are left free, and twice the logarithm of by how much
-    /// they narrow what was known of the shape beforehand. None where nothing is left free to tell how far they are off.
-    fn told(&self, point: &Point) -> Option<([f64; 2], f64)> {
-        let (rows, _) = self.rows(point)?;
-        let (readings, prior) = rows.split_at(4 * self.touches.len());
-        let of = |rows: &[Vector]| rows.iter().fold(Matrix::zeros(), |sum, row| sum + row * row.transpose());
-        let used = point.shape.unknowns();
-        let told = of(readings);
-        let mut all = told + of(prior);
-        (used..MOST).for_each(|j| all[(j, j)] += 1.0);
-        let inverse = Cholesky::new(all)?.inverse();
-        let count = self.touches.len() as f64;
-        let free = [0, 1].map(|i| {
-            let taken: f64 = readings.iter().skip(i).step_by(4).map(|row| row.dot(&(inverse * row))).sum();
-            1.0 - taken / count
-        });
-        let width = Vector::from_fn(|j, _| if j < used { point.shape.beforehand(j) } else { 0.0 });
-        let wide = Matrix::identity() + Matrix::from_diagonal(&width) * told * Matrix::from_diagonal(&width);
-        let narrowed = Cholesky::new(wide)?.l_dirty().diagonal().map(f64::ln).sum();
-        free.iter().all(|free| free * count > FREE).then_some((free, 2.0 * narrowed))
-    }
-
-    /// The cost of each push at a point, and of all else, where a push may be no touch of this outline at all and its finger anywhere: going after one
-    /// gains no more than the odds of that.
-    fn with_strays(&self, point: &Point) -> Option<(Vec<f64>, f64)> {
-        let residuals = self.residuals(point)?;
-        let (readings, prior) = residuals.split_at(4 * self.touches.len());
-        let [mean, half] = self.deviations.map(|d| d / (AT_TOUCH * self.size));
-        let stray = STRAY * mean * half / (1.0 - STRAY);
-        let square = |of: &[f64]| of.iter().map(|r| r * r).sum::<f64>();
-        let one = |of: &[f64]| {
-            2.0 * (stray.ln_1p() - ((-0.5 * square(&of[..2])).exp() + stray).ln()) + square(&of[2..])
-        };
-        Some((readings.chunks_exact(4).map(one).collect(), square(prior)))
     }
 
     fn step(&self, point: &Point, step: impl Fn(usize) -> f64) -> Point {

@@ -34,6 +34,7 @@ mod arcs;
 mod choose;
 mod error;
 mod estimate;
+mod evidence;
 mod face;
 mod fit;
 mod friction;

@@ -37,7 +37,7 @@ fn a_log_becomes_an_outline_friction_modes_and_a_page() {
     assert!(matches!(run.code, Some(0 | 4)), "{}{}", run.stdout, run.stderr);
     let summary: Value = serde_json::from_str(&scratch.read("out/summary.json")).unwrap();
     let log = &summary["logs"][0];
-    assert_eq!((&log["log"], &log["outline"]), (&3.into(), &"3 corners".into()));
+    assert_eq!((&log["log"], &log["outline"]), (&3.into(), &"3 corners".into()), "{}", log["candidates"]);
     let friction = |key: &str| log["friction"][key].as_f64().unwrap();
     let (value, deviation) = (friction("coefficient"), friction("std"));
     assert!((value - 0.4).abs() < 3.0 * deviation && deviation < 0.05, "{value} +- {deviation}");
