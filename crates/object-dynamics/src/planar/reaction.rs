@@ -97,7 +97,7 @@ impl<S: RadiusFunction> PlanarObject<S> {
         let ratio = |slip: f64| if slip == 0.0 { 0.0 } else { -friction * slip / slip.hypot(creep) };
         let (m1, m2) = (ratio(u1.dot(v_WCm) + turn1 * omega0), ratio(u2.dot(v_WCm) + turn2 * omega0));
         let c = n1.dot(n2);
-        // Its transpose has the forces' directions as columns: along its own palm friction has no normal part.
+        // Along its own palm friction has no normal part; against the other one it has.
         let g = DMat2::from_cols(DVec2::new(1.0, c + m1 * n2.dot(u1)), DVec2::new(c + m2 * n1.dot(u2), 1.0));
         let least = WEDGING * (1.0 - c * c);
         let inverse = Some(g).filter(|g| g.determinant() > least)?.inverse();
