@@ -17,12 +17,33 @@ pub(super) struct ChangeBy {
     pub(super) f: DVec3,
 }
 
+/// A contact at one sample, as far as a change of it goes by it.
+pub(super) struct Felt {
+    /// Number in the record, and place among the contacts there.
+    k: usize,
+    place: usize,
+    /// Number of the sample in the log.
+    pub(super) sample: usize,
+    pub(super) palm: usize,
+    pub(super) frictionless: bool,
+    /// Contact point from the record's origin, m; normal; velocity of the palm's material there, m/s; and force, N.
+    pub(super) c: DVec3,
+    pub(super) n: DVec3,
+    pub(super) u: DVec3,
+    pub(super) f: DVec3,
+}
+
 /// How the samples of a record count in its averages.
 pub(super) struct Averages<'a> {
     record: &'a Record,
     average: &'a Record,
+    /// By palm, in order of time: most constants are of one.
+    felt: Vec<Vec<Felt>>,
     /// By sample.
     shares: Vec<Share>,
+    /// Of each sample the first of its shares, and the interval of the average that the one before it lies in.
+    first_shares: Vec<usize>,
+    nodes: Vec<usize>,
     /// Palms whose impulses are read.
     impulses: [Option<&'a LoggedPalm>; MOST_PALMS],
 }
@@ -36,11 +57,11 @@ struct Share {
     wrench: f64,
 }
 
-/// What acts otherwise at a sample: through forces there, and by where palms are touched whose impulses are read.
+/// What acts otherwise at a sample through one palm: a wrench, and where its impulse is read, by where it is touched.
 #[derive(Clone, Copy, Default)]
 struct Acting {
     wrench: Wrench,
-    moved: [Option<DVec3>; MOST_PALMS],
+    moved: Option<DVec3>,
 }
 
 impl<'a> Averages<'a> {
@@ -65,7 +86,19 @@ impl<'a> Averages<'a> {
         for (read, palm) in impulses.iter_mut().zip(log.palms()) {
             *read = impulses::read(palm, noise).map(|_| palm);
         }
-        Self { record, average, shares, impulses }
+        let (mut first, mut node) = (0, 0);
+        let first_share = |k: usize| {
+            first += shares[first..].iter().take_while(|share| share.sample < k).count();
+            first
+        };
+        let first_shares = (0..=record.times.len()).map(first_share).collect();
+        let node = |t: &f64| {
+            node += usize::from(average.times.get(node + 1).is_some_and(|end| end < t));
+            node
+        };
+        let nodes = record.times.iter().map(node).collect();
+        let felt = felt(record, log.palms().len());
+        Self { record, average, felt, shares, first_shares, nodes, impulses }
     }
 
     /// What contacts are measured from, world.
@@ -73,39 +106,25 @@ impl<'a> Averages<'a> {
         self.record.origin
     }
 
-    /// The average where each contact, with the number of its sample in the log, is different by so much, if it is.
-    pub(super) fn changed(&self, by: impl Fn(usize, &Contact) -> Option<ChangeBy>) -> Record {
+    /// The average where each contact, of one palm alone where that is said, is different by so much, if it is.
+    pub(super) fn changed(&self, palm: Option<usize>, by: impl Fn(&Felt) -> Option<ChangeBy>) -> Record {
         let mut changed = self.average.clone();
-        let (mut shares, mut node) = (self.shares.iter().peekable(), 0);
-        // Most constants are of one palm: what the others feel is passed by.
-        let (mut some, mut before) = (Vec::new(), None);
-        for (k, contacts) in self.record.contacts.iter().enumerate() {
-            some.clear();
-            let of = |(i, contact)| Some((i, contact, by(self.record.samples[k], contact)?));
-            some.extend(contacts.iter().enumerate().filter_map(of));
-            let acting = (!some.is_empty()).then(|| self.acting(&some));
-            while let Some(share) = shares.next_if(|share| share.sample == k) {
-                let Some(acting) = &acting else { continue };
-                let wrench = &mut changed.wrenches[share.window];
-                *wrench = *wrench + acting.wrench * share.wrench;
-                let to = &mut changed.contacts[share.window];
-                for (i, _, by) in &some {
-                    to.get_mut(*i).into_iter().for_each(|to| to.add(by, share.contact));
+        let palms = self.felt.iter().enumerate().filter(|(i, _)| palm.is_none_or(|palm| palm == *i));
+        for (palm, felt) in palms {
+            let mut before: Option<(usize, Acting)> = None;
+            for felt in felt {
+                let acting = by(felt).map(|by| self.acted(&mut changed, felt, &by));
+                let next = before.is_some_and(|(at, _)| at + 1 == felt.k);
+                if let Some((at, acting)) = before.filter(|_| !next) {
+                    self.over(&mut changed, (palm, at + 1), [Some(acting), None]);
                 }
+                let before_it = before.filter(|_| next).map(|(_, acting)| acting);
+                self.over(&mut changed, (palm, felt.k), [before_it, acting]);
+                before = acting.map(|acting| (felt.k, acting));
             }
-            if k > 0 {
-                node += usize::from(changed.times[node + 1] < self.record.times[k]);
+            if let Some((at, acting)) = before {
+                self.over(&mut changed, (palm, at + 1), [Some(acting), None]);
             }
-            if k > 0 && (before.is_some() || acting.is_some()) {
-                let since = self.record.times[k - 1] - changed.times[node];
-                let none = Acting::default();
-                let ends = [&before, &acting].map(|acting| acting.as_ref().unwrap_or(&none));
-                let (impulse, first) = self.over(k, ends);
-                let interval = &mut changed.intervals[node];
-                interval.impulse = interval.impulse + impulse;
-                interval.first += first + impulse.force * since;
-            }
-            before = acting;
         }
         changed
             .contacts
@@ -115,36 +134,57 @@ impl<'a> Averages<'a> {
         changed
     }
 
-    fn acting(&self, some: &[(usize, &Contact, ChangeBy)]) -> Acting {
-        let mut all = Acting::default();
-        for (_, contact, by) in some {
-            if self.impulses[contact.palm].is_some() {
-                all.moved[contact.palm] = Some(by.c);
-            } else {
-                let moment = (contact.c + by.c).cross(contact.f + by.f) - contact.c.cross(contact.f);
-                all.wrench = all.wrench + Wrench { force: by.f, moment };
+    /// Changes the windows that a contact counts in; gives what acts otherwise.
+    fn acted(&self, changed: &mut Record, felt: &Felt, by: &ChangeBy) -> Acting {
+        let mut acting = Acting::default();
+        if self.impulses[felt.palm].is_some() {
+            acting.moved = Some(by.c);
+        } else {
+            let moment = (felt.c + by.c).cross(felt.f + by.f) - felt.c.cross(felt.f);
+            acting.wrench = Wrench { force: by.f, moment };
+        }
+        for share in &self.shares[self.first_shares[felt.k]..self.first_shares[felt.k + 1]] {
+            let wrench = &mut changed.wrenches[share.window];
+            *wrench = *wrench + acting.wrench * share.wrench;
+            if let Some(to) = changed.contacts[share.window].get_mut(felt.place) {
+                to.add(by, share.contact);
             }
         }
-        all
+        acting
     }
 
-    /// Impulse over the interval that ends at sample `k`, and its integral over time.
-    fn over(&self, k: usize, [before, after]: [&Acting; 2]) -> (Wrench, DVec3) {
-        let h = self.record.intervals[k - 1].h;
-        let mut impulse = (before.wrench + after.wrench) * (0.5 * h);
-        let first = (before.wrench.force + 2.0 * after.wrench.force) * (h * h / 6.0);
-        for (i, palm) in self.impulses.iter().enumerate() {
-            let Some(J) = palm.and_then(|palm| palm.impulse(self.record.samples[k])) else { continue };
-            let (sum, count) = [before, after]
-                .iter()
-                .filter_map(|acting| acting.moved[i])
-                .fold((DVec3::ZERO, 0.0), |(sum, count), moved| (sum + moved, count + 1.0));
-            if count > 0.0 {
-                impulse.moment += (sum / count).cross(J.vector);
-            }
+    /// Changes the impulse over the interval that ends at sample `k`, and its integral over time, by what acts otherwise at its ends through a palm.
+    fn over(&self, changed: &mut Record, (palm, k): (usize, usize), ends: [Option<Acting>; 2]) {
+        if k == 0 || k >= self.record.times.len() || ends.iter().all(Option::is_none) {
+            return;
         }
-        (impulse, first)
+        let h = self.record.intervals[k - 1].h;
+        let [before, after] = ends.map(|acting| acting.unwrap_or_default().wrench);
+        let mut impulse = (before + after) * (0.5 * h);
+        let read = self.impulses[palm].and_then(|palm| palm.impulse(self.record.samples[k]));
+        let moved = ends.iter().flatten().filter_map(|acting| acting.moved);
+        let (sum, count) = moved.fold((DVec3::ZERO, 0.0), |(sum, count), moved| (sum + moved, count + 1.0));
+        if let Some(J) = read.filter(|_| count > 0.0) {
+            impulse.moment += (sum / count).cross(J.vector);
+        }
+        let node = self.nodes[k];
+        let since = self.record.times[k - 1] - changed.times[node];
+        let interval = &mut changed.intervals[node];
+        interval.impulse = interval.impulse + impulse;
+        interval.first += (before.force + 2.0 * after.force) * (h * h / 6.0) + impulse.force * since;
     }
+}
+
+/// The contacts of a record, by palm.
+fn felt(record: &Record, palms: usize) -> Vec<Vec<Felt>> {
+    let mut all: Vec<Vec<Felt>> = (0..palms).map(|_| Vec::new()).collect();
+    for (k, contacts) in record.contacts.iter().enumerate() {
+        for (place, contact) in contacts.iter().enumerate() {
+            let Contact { palm, c, n, u, f, frictionless, .. } = *contact;
+            all[palm].push(Felt { k, place, sample: record.samples[k], palm, frictionless, c, n, u, f });
+        }
+    }
+    all
 }
 
 impl Contact {

@@ -1,6 +1,7 @@
 //! Errors of the poses of all nodes together, for bounds on the shape.
 
 use super::body::CONSTANTS;
+use super::both::of_each;
 use super::problem::{Problem, Unknowns};
 use super::solve::{Covariances, Solved};
 use super::state::Tangent;
@@ -23,13 +24,13 @@ pub(super) fn pose_errors(
     relied_on: &[usize],
     (axes, known, wider): (DQuat, bool, f64),
 ) -> Option<PoseErrors> {
-    let mut random = Normal::seeded(SEED);
     let nodes = kept(problem, relied_on);
     let samples = problem.node_samples();
     let motions = &solved.unknowns.motions;
     let poses: Vec<_> = nodes.iter().map(|&j| (motions[j].p, (motions[j].q * axes).normalize())).collect();
     let (body, joint) = (root(&covariances.body), covariances.joint(&nodes));
-    let draw = |_: usize| {
+    let draw = |number: usize| -> Vec<_> {
+        let mut random = Normal::seeded(SEED.wrapping_add(number as u64));
         let mut constants = body * normals(&mut random);
         let mut steps = joint.draw(&constants, &mut random);
         for error in &covariances.errors {
@@ -47,9 +48,16 @@ pub(super) fn pose_errors(
         };
         nodes.iter().zip(&poses).zip(&steps).map(moved).collect()
     };
-    let draws = (0..DRAWS).map(draw);
+    let all = samples.last().map_or(0, |last| last + 1);
+    let draws = of_each(all, &std::array::from_fn::<_, DRAWS, _>(|number| number), draw);
     let lasting = lasting(problem, solved);
-    PoseErrors::from_draws(nodes.iter().map(|&j| samples[j]).collect(), &poses, draws, lasting, known)
+    PoseErrors::from_draws(
+        nodes.iter().map(|&j| samples[j]).collect(),
+        &poses,
+        draws.into_iter(),
+        lasting,
+        known,
+    )
 }
 
 /// Of some nodes those at which errors are kept: apart by a share of the natural time at least, the first and the last among them.

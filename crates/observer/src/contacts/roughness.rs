@@ -40,12 +40,18 @@ impl ContactNoiseLevel {
         CREEP * (gravity * length).sqrt()
     }
 
+    /// The same of a body of the size `length`, m, or else of that of the contacts of a log. None where no two palms are touched at once and no size
+    /// is stated.
+    #[must_use]
+    pub fn floor_of_log(log: &ContactLog, gravity: f64, length: Option<f64>) -> Option<f64> {
+        Some(Self::guessed_floor(gravity, length.or_else(|| spread(log))?))
+    }
+
     /// By the roughness of the readings of a log under `gravity`, m/s^2, with a guess of what conditions are off by, of a body of the size `length`,
     /// m, or else of that of its contacts. None where no two palms are touched at once and no size is stated.
     #[must_use]
     pub fn guessed(log: &ContactLog, gravity: f64, length: Option<f64>) -> Option<Self> {
-        let length = length.or_else(|| spread(log))?;
-        Some(Self::by_roughness(log, Self::guessed_floor(gravity, length), false))
+        Some(Self::by_roughness(log, Self::floor_of_log(log, gravity, length)?, false))
     }
 
     /// Standard deviations of the white noise of a log's contacts, forces and impulses, by what of some readings in a row no polynomial explains.

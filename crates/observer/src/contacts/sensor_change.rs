@@ -1,10 +1,9 @@
 //! What a constant of the sensors that is not what it was taken for makes of a contact.
 
 use super::body::Body;
-use super::changed::ChangeBy;
+use super::changed::{ChangeBy, Felt};
 use super::noise::ContactNoiseLevel;
 use super::problem::Units;
-use super::record::Contact;
 use super::samples::Deviations;
 use super::slopes::slopes;
 use super::state::Motion;
@@ -37,15 +36,26 @@ pub(super) struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// What a contact at sample `k` is different by then; none where it is as it was.
-    pub(super) fn of(&self, k: usize, contact: &Contact) -> Option<ChangeBy> {
-        let palm = &self.log.palms()[contact.palm];
+    /// The palm whose contacts alone it changes, from 0.
+    pub(super) fn palm(&self) -> Option<usize> {
+        match self.fault {
+            Constant::ForceGain { palm }
+            | Constant::ForceBias { palm }
+            | Constant::ContactOffset { palm, .. }
+            | Constant::PalmTilt { palm, .. } => palm.checked_sub(1),
+            _ => None,
+        }
+    }
+
+    /// What a contact is different by then; none where it is as it was.
+    pub(super) fn of(&self, contact: &Felt) -> Option<ChangeBy> {
+        let (palm, k) = (&self.log.palms()[contact.palm], contact.sample);
         let (number, by) = (contact.palm + 1, self.by);
         let none = ChangeBy::default();
         let by = match self.fault {
             Constant::ForceGain { palm } if palm == number => ChangeBy { f: contact.f * by, ..none },
             Constant::ForceBias { palm } if palm == number => ChangeBy { f: contact.n * by, ..none },
-            Constant::ForceDelay => ChangeBy { f: self.later(k, contact), ..none },
+            Constant::ForceDelay => ChangeBy { f: self.later(contact), ..none },
             Constant::ContactDelay => {
                 let [own, along] = self.slopes.map(|slopes| slopes[contact.palm][k]);
                 let moved = own * self.value + along * (by - self.value);
@@ -73,9 +83,10 @@ impl Change<'_> {
         Some(by)
     }
 
-    /// What the force is more that a palm tells later than at sample `k`. From whole samples, as far as there are: what is between two of them has
+    /// What the force is more that a palm tells later than at a contact. From whole samples, as far as there are: what is between two of them has
     /// less noise than each.
-    fn later(&self, k: usize, contact: &Contact) -> DVec3 {
+    fn later(&self, contact: &Felt) -> DVec3 {
+        let k = contact.sample;
         let (palm, times) = (&self.log.palms()[contact.palm], self.log.times());
         let after = times.partition_point(|t| *t < times[k] + self.value).min(times.len() - 1);
         let before = after.saturating_sub(1);

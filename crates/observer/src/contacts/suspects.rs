@@ -102,7 +102,7 @@ impl<'a> Sensors<'a> {
         let slopes = [self.slopes_of(fault), slopes];
         let origin = averages.origin();
         let change = Change { fault, value, by: value + step, log, motions, body, slopes, origin };
-        averages.changed(|k, contact| change.of(k, contact))
+        averages.changed(change.palm(), |contact| change.of(contact))
     }
 
     /// Constants that the log may have.

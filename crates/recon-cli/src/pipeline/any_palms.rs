@@ -252,10 +252,19 @@ fn modelled(
 /// What the estimator is told: as the scene states it, and the noise that it does not state from the roughness of the readings.
 fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOptions, CliError> {
     let sensors = &scene.sensors;
-    let rough = noise_by_roughness(log, scene).ok_or_else(|| no_size(log))?;
+    let floor =
+        ContactNoiseLevel::floor_of_log(log, scene.gravity, scene.size).ok_or_else(|| no_size(log))?;
+    let floor = sensors.contact_speed_std.unwrap_or(floor);
     // Impulses beside forces are read where their noise is stated.
     let alone = !log.palms().iter().all(by_force);
-    let rough = ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough };
+    let stated =
+        !alone && sensors.contact_std.is_some() && sensors.force_std.or(sensors.force_share).is_some();
+    let rough = if stated {
+        ContactNoiseLevel { contact: 0.0, force_fixed: 0.0, force_share: 0.0, impulse: None, floor }
+    } else {
+        let rough = ContactNoiseLevel::by_roughness(log, floor, false);
+        ContactNoiseLevel { impulse: rough.impulse.filter(|_| alone), ..rough }
+    };
     // Of means the noise is that of their samples over the root of how many there are.
     let noise = as_stated(sensors, rough, 1.0 / (together as f64).sqrt());
     let (pose_errors, suspects, mode_odds) = (true, true, true);
@@ -293,13 +302,6 @@ pub(super) fn as_stated(sensors: &Sensors, rough: ContactNoiseLevel, mean: f64) 
         .or(rough.impulse);
     let contact = sensors.contact_std.map_or(rough.contact, |stated| mean * stated);
     ContactNoiseLevel { contact, force_fixed, force_share, impulse, ..rough }
-}
-
-/// The noise of a log by the roughness of its readings, and what conditions are off by as the scene states it. None where no two palms are touched
-/// at once and the scene states no size.
-fn noise_by_roughness(log: &ContactLog, scene: &Scene) -> Option<ContactNoiseLevel> {
-    let rough = ContactNoiseLevel::guessed(log, scene.gravity, scene.size)?;
-    Some(ContactNoiseLevel { floor: scene.sensors.contact_speed_std.unwrap_or(rough.floor), ..rough })
 }
 
 /// What conditions are off by beside noise, m/s, of a body of the size `length`, m: as the scene states it.

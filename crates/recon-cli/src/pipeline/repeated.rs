@@ -1,6 +1,7 @@
 //! Readings that repeat: what is stuck and what is held is left out, and named.
 
 use crate::error::CliError;
+use recon::contact_kinematics::at_once;
 use recon::object_dynamics::{ContactLog, Held, RepeatedReading, Stuck, planar};
 
 /// Share of the new readings of what is held most that must be left where none of what is held is told again.
@@ -30,7 +31,7 @@ pub(crate) fn repeated(log: &ContactLog) -> Vec<String> {
 
 /// Numbers of the samples that are left, where some are left out, and what is to be said of them.
 fn left(log: &ContactLog) -> (Option<Vec<usize>>, Vec<String>) {
-    let (stuck, held, count) = (log.stuck(), log.held(), log.times().len());
+    let ((stuck, held), count) = (at_once(|| log.stuck(), || log.held()), log.times().len());
     let mut told = of_stuck(&stuck, log.times());
     let unstuck = Stuck::left(&stuck, count);
     let fewest = held.iter().map(|held| count - held.again.len()).min().unwrap_or(count);

@@ -169,14 +169,12 @@ fn changed_averages_are_those_of_the_changed_log() {
     let average = whole.averaged(longest);
     let averages = Averages::new(&log, &options.noise, [&whole, &average], longest);
     let along = |k: usize| log.palms()[1].motion(k).pose.R_WP * (DVec3::X * by);
-    let moved = averages.changed(|k, contact| match contact.palm {
-        1 => Some(ChangeBy { c: along(k), ..ChangeBy::default() }),
+    let moved = averages.changed(None, |contact| match contact.palm {
+        1 => Some(ChangeBy { c: along(contact.sample), ..ChangeBy::default() }),
         _ => None,
     });
-    let louder = averages.changed(|_, contact| match contact.palm {
-        1 => Some(ChangeBy { f: contact.f * by, ..ChangeBy::default() }),
-        _ => None,
-    });
+    let louder =
+        averages.changed(Some(1), |contact| Some(ChangeBy { f: contact.f * by, ..ChangeBy::default() }));
     let gain = forces(&log, |i, k, f| if i == 1 { f[k] * (1.0 + by) } else { f[k] });
     for (changed, log) in [(moved, shifted(&log, 1, by)), (louder, gain)] {
         let expected = record(&log).averaged(longest);
