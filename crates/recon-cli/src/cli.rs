@@ -288,7 +288,7 @@ it says when the motion was known and when not.
 With --json it is one object a line.
 
 Examples:
-  recon follow log.csv --scene scene.toml -o motion.csv
+  recon follow log.csv --scene scene.toml -o motion.csv --report page.html
   robot | recon follow - --scene scene.toml --identify --every 0.02")]
 pub(crate) struct FollowArgs {
     /// Sensor log (CSV); `-` for standard input
@@ -314,6 +314,9 @@ pub(crate) struct FollowArgs {
     /// File to write [default: standard output]; links are followed, pipes and devices written to
     #[arg(short, long)]
     pub(crate) output: Option<PathBuf>,
+    /// Page to write as well (HTML) at the end: what was known when, curves with their deviations, contact modes
+    #[arg(long, value_name = "FILE")]
+    pub(crate) report: Option<PathBuf>,
 }
 
 /// A format of an exported object.

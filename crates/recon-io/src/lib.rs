@@ -80,11 +80,12 @@ pub use planar_figures::{FigureCurve, FigureFrame, FigurePanel, write_figures};
 pub use plausibility::{Implausibility, implausibilities, implausible_contacts};
 pub use report::{
     BatchPage, Bound, Bounds, ContourPage, EstimateData, Evidence, EvidenceValue, ExplorationPage,
-    ExplorationWords, Fact, FiguresPage, JumpRow, Level, LogCard, ModeSpan, MotionState, PalmContact,
-    PlaneEstimateData, PushedLog, ShapeMarks, TouchRow, TrueShape, Verdict, doubtful_spans,
-    estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, sample_gaps, write_batch_report,
-    write_contact_report, write_contour_report, write_estimate_report, write_exploration_report,
-    write_figures_page, write_planar_contact_report, write_plane_estimate_report, write_pushes_report,
+    ExplorationWords, Fact, FiguresPage, FollowedMotion, FollowedPage, JumpRow, Level, LogCard, ModeSpan,
+    MotionState, PalmContact, PlaneEstimateData, PushedLog, ShapeMarks, TouchRow, TrueShape, Verdict,
+    doubtful_spans, estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, sample_gaps,
+    write_batch_report, write_contact_report, write_contour_report, write_estimate_report,
+    write_exploration_report, write_figures_page, write_followed_report, write_planar_contact_report,
+    write_plane_estimate_report, write_pushes_report,
 };
 pub use scene::{
     AnyOutline, BoxedShape, KnownInertia, KnownPalm, OutlineScene, PlanarBody, PlanarKnown, PlanarScene,

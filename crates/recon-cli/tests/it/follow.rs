@@ -50,9 +50,18 @@ fn number(table: &Table, row: usize, column: &str) -> f64 {
 #[test]
 fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     let (scratch, log) = scratch("follow", "duration = 3.0");
-    let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "-o", "motion.csv"]);
+    let args = ["follow", "log.csv", "--scene", "scene.toml", "-o", "motion.csv", "--report", "page.html"];
+    let run = scratch.run(&args);
     assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
     assert!(run.stdout.contains("the motion is known from "), "{}", run.stdout);
+    let page = scratch.read("page.html");
+    for part in ["The motion is known from ", "Centre of mass", "Turn since it was found", "class=\"shade\""]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    // What is read is not written over.
+    let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "--report", "log.csv"]);
+    assert_eq!(run.code, Some(5), "{}{}", run.stdout, run.stderr);
     let table = scratch.read("motion.csv");
     let motion = Table::parse(&table);
     assert_eq!(motion.rows.len(), 31);

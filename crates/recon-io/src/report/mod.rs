@@ -14,9 +14,9 @@ mod thin;
 
 pub use batch::{BatchPage, LogCard, write_batch_report};
 pub use contacts::{
-    EstimateData, ModeSpan, PlaneEstimateData, ShapeMarks, doubtful_spans, estimated_mode_spans, mode_spans,
-    mode_times, planar_mode_spans, sample_gaps, write_contact_report, write_estimate_report,
-    write_planar_contact_report, write_plane_estimate_report,
+    EstimateData, FollowedMotion, FollowedPage, ModeSpan, PlaneEstimateData, ShapeMarks, doubtful_spans,
+    estimated_mode_spans, mode_spans, mode_times, planar_mode_spans, sample_gaps, write_contact_report,
+    write_estimate_report, write_followed_report, write_planar_contact_report, write_plane_estimate_report,
 };
 pub use contour::{ContourPage, JumpRow, write_contour_report};
 pub use data::{Bound, Bounds, Evidence, EvidenceValue, Level, MotionState, PalmContact, TrueShape, Verdict};

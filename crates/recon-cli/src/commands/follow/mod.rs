@@ -1,9 +1,11 @@
 //! `recon follow`: the motion sample by sample, as a log is written or read.
 
 pub(crate) mod input;
+mod page;
 mod spans;
 mod words;
 
+use super::simulate::write;
 use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
@@ -16,7 +18,8 @@ use recon::observer::contacts::stream::{MotionStream, StreamEstimate, StreamOpti
 use recon::observer::contacts::{ContactNoiseLevel, ContactOptions};
 use recon_io::StreamRow;
 use recon_io::{
-    FileTarget, OutputError, Scene, is_bag, is_standard_output, write_stream_header, write_stream_row,
+    FileTarget, FollowedMotion, OutputError, Scene, is_bag, is_standard_output, write_followed_report,
+    write_stream_header, write_stream_row,
 };
 use serde_json::json;
 use spans::Spans;
@@ -31,6 +34,8 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let output = args.output.as_ref().filter(|path| !is_standard_output(path));
     let inputs: Vec<_> = [&args.log].into_iter().chain(&args.scene).cloned().collect();
     let target = output.map(|path| FileTarget::new(path, &inputs)).transpose()?;
+    let others: Vec<_> = inputs.iter().chain(output).cloned().collect();
+    let page = args.report.as_ref().map(|path| FileTarget::new(path, &others)).transpose()?;
     let scene = args.scene.as_ref().map(Scene::read).transpose()?.ok_or(CliError::LogNeedsScene)?;
     if is_bag(&args.log) {
         return Err(CliError::BagFollowed { path: args.log.clone() });
@@ -46,11 +51,12 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     let stream = MotionStream::new(samples.palms()?, StreamOptions { contacts, sample_rate })?;
     let progress = Progress::new(1, console.is_quiet() || output.is_none());
     progress.step("following the motion");
-    let followed = match output.zip(target) {
+    let shown = page.as_ref().map(|_| FollowedMotion::default());
+    let mut followed = Followed { shown, ..Followed::default() };
+    let ended = match output.zip(target) {
         Some((path, target)) => while_writing(|| {
             let mut file = target.begin()?;
             let run = Run { stream, every: args.every, console, json: false };
-            let mut followed = Followed::default();
             // Whether to stop is asked between rows, which are written whole.
             match run.all(samples, &mut file, &mut followed) {
                 Ok(()) => file.commit()?,
@@ -67,21 +73,27 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
                     return Err(error);
                 }
             }
-            Ok(followed)
-        })?,
+            Ok(None)
+        }),
         None => {
             let run = Run { stream, every: args.every, console, json: console.is_json() };
-            let mut followed = Followed::default();
             match run.all(samples, io::stdout().lock(), &mut followed) {
-                Ok(()) => followed,
-                Err(Failure::Other(error)) => return Err(error),
+                Ok(()) => Ok(None),
+                Err(Failure::Other(error)) => Err(error),
                 // Whoever reads has had what it wanted.
-                Err(Failure::Written(error)) => return listened(Err(error)).map(|()| Outcome::Done),
+                Err(Failure::Written(error)) => listened(Err(error)).map(|()| Some(Outcome::Done)),
             }
         }
     };
     drop(progress);
-    followed.tell(console, output.map(PathBuf::as_path))
+    // Whatever ended it, the page shows what was followed until then.
+    if let Some((path, target)) = args.report.as_ref().zip(page) {
+        followed.show(&args.log, path, target)?;
+    }
+    match ended? {
+        Some(outcome) => Ok(outcome),
+        None => followed.tell(console, [output, args.report.as_ref()].map(|path| path.map(PathBuf::as_path))),
+    }
 }
 
 /// What the stream is told of a body that may be known.
@@ -183,6 +195,8 @@ struct Followed {
     /// Palms whose modes are told.
     palms: usize,
     last: Option<StreamEstimate>,
+    /// What a page is to show.
+    shown: Option<FollowedMotion>,
 }
 
 impl Run<'_> {
@@ -209,6 +223,7 @@ impl Run<'_> {
             let before = followed.last.replace(estimate).map(|e| e.stage);
             self.tell(before, &estimate);
             followed.spans.take(t, estimate.stage == StreamStage::Tracking);
+            followed.shown.iter_mut().for_each(|shown| shown.take(&estimate));
             if rows.due(t) {
                 self.row(&estimate, palms, &mut to)?;
             }
@@ -278,19 +293,39 @@ fn name(stage: StreamStage) -> &'static str {
 }
 
 impl Followed {
-    fn tell(&self, console: &Console, output: Option<&Path>) -> Result<Outcome, CliError> {
-        let last = self.last.ok_or(CliError::TooFewSamples { found: self.samples, needed: 2 })?;
-        let [cm, v, ..] = deviations(&last);
+    /// When the motion was known, and how well at the end.
+    fn known(&self, last: &StreamEstimate) -> String {
+        let [cm, v, ..] = deviations(last);
         let end = match last.stage {
             StreamStage::Tracking => format!("at the end it is known to {cm:.1e} m and {v:.1e} m/s"),
             StreamStage::Contradicted => "at the end the data contradict it".to_owned(),
             StreamStage::Gathering | StreamStage::Searching { .. } => "at the end it is not known".to_owned(),
         };
-        let found = if self.spans.is_empty() {
+        if self.spans.is_empty() {
             "no motion: the log is too short, moves too little, or is not that of this body".to_owned()
         } else {
             format!("the motion is known {}; {end}", self.spans)
-        };
+        }
+    }
+
+    fn told(&self, last: &StreamEstimate) -> words::Told {
+        last.modes.as_ref().map(|modes| words::told(modes, self.palms)).unwrap_or_default()
+    }
+
+    /// Writes the page, if there is anything to show.
+    fn show(&mut self, log: &Path, path: &Path, target: FileTarget) -> Result<(), CliError> {
+        let (Some(last), Some(motion)) = (self.last, self.shown.take()) else { return Ok(()) };
+        let mut known = self.known(&last);
+        known[..1].make_ascii_uppercase();
+        let title =
+            log.file_name().map_or_else(|| "log".to_owned(), |name| name.to_string_lossy().into_owned());
+        let page = page::page(self, motion, title, (known + ".", &self.told(&last).doubts));
+        write(target, path, |to| write_followed_report(&page, to))
+    }
+
+    fn tell(&self, console: &Console, [output, page]: [Option<&Path>; 2]) -> Result<Outcome, CliError> {
+        let last = self.last.ok_or(CliError::TooFewSamples { found: self.samples, needed: 2 })?;
+        let ([cm, v, ..], found) = (deviations(&last), self.known(&last));
         let mut text = format!("{} samples, {found}", self.samples);
         if self.left_out > 0 {
             text += &format!("\n{} samples could not be used", self.left_out);
@@ -298,11 +333,11 @@ impl Followed {
         if let Some(why) = &self.why {
             text += &format!("; the first: {why}");
         }
-        let told = last.modes.as_ref().map(|modes| words::told(modes, self.palms)).unwrap_or_default();
+        let told = self.told(&last);
         text += &told.text;
         match output {
             Some(path) => {
-                let figures = json!({
+                let mut figures = json!({
                     "table": path.to_string_lossy(),
                     "samples": self.samples,
                     "left_out": self.left_out,
@@ -314,6 +349,9 @@ impl Followed {
                     "friction": told.frictions,
                     "mode_doubts": told.doubts,
                 });
+                if let Some(page) = page {
+                    figures["report"] = page.to_string_lossy().into();
+                }
                 console.written(&format!("{}: {text}", path.display()), &figures)?;
             }
             None => console.note(&text),

@@ -74,8 +74,12 @@ fn bands(all: &[Vec<ModeSpan>], marks: &[f64], doubtful: &[[f64; 2]], gaps: &[[f
     for gap in gaps {
         out += &bar("class=\"missing\"", *gap, 0.0, bottom);
     }
-    for span in doubtful {
-        out += &bar("class=\"doubtful\"", *span, 0.0, bottom);
+    for [from, to] in doubtful {
+        // Modes may be told later than the motion is looked for.
+        let within = [from.max(start), to.min(end)];
+        if within[0] < within[1] {
+            out += &bar("class=\"doubtful\"", within, 0.0, bottom);
+        }
     }
     for t in marks {
         let x = place(*t);

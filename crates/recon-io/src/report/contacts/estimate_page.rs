@@ -18,15 +18,16 @@ const TRUE_SHAPE: &str = " Dashed: the outline of the true shape, from the scene
 const NO_OBJECT: &str =
     "The object is not drawn: where it was touched is not known under a motion that is not to be relied on.";
 
-const KICKER: &str = "Motion, mass and inertia from contacts of any palms";
+pub(super) const KICKER: &str = "Motion, mass and inertia from contacts of any palms";
 const BANDS: &str = "Bands hold 95 % of what the estimate may be off by, or a reading by its noise, as standard deviations say.";
 const DASHED: &str = " Dashed: the true motion, from the log.";
-const MODES: &str = "Modes from the ratio of friction to normal force and from the slip: the paler, the less sure. Time in s. \
-    Dashed lines: the instants of the small pictures.";
+const MODES: &str = "Modes from the ratio of friction to normal force and from the slip: the paler, the less sure. Time in s.";
+const MARKS: &str = " Dashed lines: the instants of the small pictures.";
 const LEFT_OUT: &str = "What was modelled, what was left out, what that costs";
 
 /// What the page of an estimate is made of, in space and in the plane alike.
 pub(super) struct EstimatePage<'a> {
+    pub(super) kicker: &'a str,
     pub(super) title: &'a str,
     pub(super) verdict: &'a Verdict,
     pub(super) note: &'a str,
@@ -69,6 +70,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
     let truth = if data.true_shape.is_some() { TRUE_SHAPE } else { "" };
     let page = EstimatePage {
+        kicker: KICKER,
         title: &data.title,
         verdict: &data.verdict,
         note: &data.note,
@@ -114,14 +116,28 @@ impl EstimatePage<'_> {
                 self.panels,
                 &format!("{BANDS}{dashed} Shaded: not relied on.{no_samples}"),
             )
-            + &modes_section(&self.spans, &self.pictures.times(), Some(&doubtful), &gaps, MODES)
+            + &self.modes(&doubtful, &gaps)
             + &curves_section("Bounds on the shape", self.shape, &of_shape(self.shape))
             + &evidence_section(LEFT_OUT, &rows(self.least_model))
             + &evidence_section("Mass, inertia, and what the result rests on", &rows(self.evidence));
-        let verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings)
-            + &notice(Level::Neutral, "Note", self.note)
-            + &next(self.next);
-        Page { kicker: KICKER, title: self.title, verdict, facts: &self.facts, body }.write(to)
+        let mut verdict = notices(self.verdict, ["Reliable", "With care", "Unreliable"], self.warnings);
+        if !self.note.is_empty() {
+            verdict += &notice(Level::Neutral, "Note", self.note);
+        }
+        if !self.next.is_empty() {
+            verdict += &next(self.next);
+        }
+        Page { kicker: self.kicker, title: self.title, verdict, facts: &self.facts, body }.write(to)
+    }
+
+    /// What contacts do, where that is told.
+    fn modes(&self, doubtful: &[[f64; 2]], gaps: &[[f64; 2]]) -> String {
+        if self.spans.is_empty() {
+            return String::new();
+        }
+        let marks = self.pictures.times();
+        let pictures = if marks.is_empty() { "" } else { MARKS };
+        modes_section(&self.spans, &marks, Some(doubtful), gaps, &format!("{MODES}{pictures}"))
     }
 }
 

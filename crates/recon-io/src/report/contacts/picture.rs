@@ -170,8 +170,11 @@ impl Pictures {
         self.stills.iter().map(|picture| picture.t).collect()
     }
 
-    /// All of them to one scale, with axes, gravity and a length, as a section of the page.
+    /// All of them to one scale, with axes, gravity and a length, as a section of the page; none without any.
     pub(super) fn section(&self, caption: &str) -> String {
+        if self.film.is_empty() {
+            return String::new();
+        }
         let paper = Paper::under(self.film.iter().chain(&self.stills));
         let stills: String = self.stills.iter().map(|picture| paper.still(picture)).collect();
         let shown = format!(

@@ -3,7 +3,7 @@
 use super::super::page::{Fact, of_body};
 use super::super::{Evidence, Verdict};
 use super::estimate::outline;
-use super::estimate_page::EstimatePage;
+use super::estimate_page::{EstimatePage, KICKER};
 use super::picture::{ForceScale, Line, Picture, Pictures, axes_of_plane};
 use super::plane::{PalmAt, palm};
 use super::spans::estimated_mode_spans;
@@ -63,6 +63,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
     let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
     let relied = found.relied_on.iter().any(|relied| *relied);
     let page = EstimatePage {
+        kicker: KICKER,
         title: &data.title,
         verdict: &data.verdict,
         note: &data.note,

@@ -3,6 +3,7 @@
 use recon::object_dynamics::{ContactMode, ContactSimulation, MOST_PALMS, planar};
 use recon::observer::contact_modes::ContactOdds;
 use recon::observer::contacts::EstimatedModes;
+use recon::observer::contacts::stream::{StreamEstimate, StreamModes};
 
 /// A stretch of time over which a contact does the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +50,16 @@ pub fn estimated_mode_spans(
     let mut all = modes.iter().enumerate().map(|(k, modes)| (modes[palm], sure(k))).peekable();
     let Some(first) = all.peek().copied() else { return Vec::new() };
     sure_spans(first, [start, end], times.iter().copied().zip(all))
+}
+
+/// The same of the modes that a stream acted on, from when they were told; none where they never are.
+pub(super) fn followed_mode_spans(followed: &[StreamEstimate], palm: usize) -> Vec<ModeSpan> {
+    let told = || followed.iter().filter_map(|of| Some((of.t, of.modes.as_ref()?)));
+    let one = |(t, modes): (f64, &StreamModes)| (t, (modes.decided[palm], tenths(&modes.odds[palm])));
+    let (Some((start, first)), Some((end, _))) = (told().next().map(one), told().last()) else {
+        return Vec::new();
+    };
+    sure_spans(first, [start, end], told().map(one))
 }
 
 /// The probability of the most probable mode, in tenths; what is not nearly certain is less than ten.
