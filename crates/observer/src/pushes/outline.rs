@@ -76,7 +76,19 @@ pub(super) fn covariance(
     inverse.unwrap_or_else(SMatrix::identity) * WIDER
 }
 
+/// Ways to a touch, as a share of the way around, beyond which a stretch of the outline is inferred.
+const INFERRED: f64 = 0.05;
+
 impl PushedOutline {
+    /// Where a push tells most: in the middle of the longest stretch that no finger felt, where its face and its corners are inferred from those beside
+    /// them; of one that was felt all around where it is least known. None of an outline without points.
+    #[must_use]
+    pub fn next_push(&self) -> Option<&OutlinePoint> {
+        let around: f64 = self.line.edges().map(|(a, b)| a.distance(b)).sum();
+        let most = |of: fn(&OutlinePoint) -> f64| self.points.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
+        most(|p| p.to_touch).filter(|p| p.to_touch > INFERRED * around).or_else(|| most(|p| p.deviation))
+    }
+
     pub(super) fn new(
         fitted: &Fitted,
         candidates: Vec<OutlineCandidate>,

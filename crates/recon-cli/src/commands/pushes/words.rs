@@ -154,12 +154,18 @@ fn figures(told: &Told) -> Value {
         ("friction", e.friction.as_ref().map(friction)),
         ("friction_of_halves", told.halves.map(|halves| json!(halves.each_ref().map(friction)))),
         ("force_noise_n", e.force_noise.map(Value::from)),
+        ("next_push", e.outline.next_push().map(next_push)),
     ] {
         if let Some(value) = value {
             all[key] = value;
         }
     }
     all
+}
+
+/// Where a push tells most, and along which normal into the object.
+fn next_push(at: &OutlinePoint) -> Value {
+    json!({"point_m": at.point.to_array(), "inward": (-at.normal).to_array(), "to_touch_m": at.to_touch, "std_m": at.deviation})
 }
 
 /// A log on the console.
@@ -203,13 +209,15 @@ fn next(told: &Told) -> String {
             "see report.html for the pushes that do not go with the others".to_owned()
         };
     }
-    match least_known(told) {
+    match told.estimate.outline.next_push() {
         Some(point) => {
             let [x, y] = point.point.to_array().map(|v| (1e3 * v).round() + 0.0);
             let towards = (-point.normal.y).atan2(-point.normal.x).to_degrees();
-            format!(
-                "push at ({x:.0}, {y:.0}) mm of the object, towards {towards:.0}°: its outline is least known there"
-            )
+            let why = match 1e3 * point.to_touch {
+                far if far >= 1.0 => format!("the nearest touch is {far:.0} mm away"),
+                _ => "its outline is least known there".to_owned(),
+            };
+            format!("push at ({x:.0}, {y:.0}) mm of the object, towards {towards:.0}°: {why}")
         }
         None => "nothing is left that pushes could tell".to_owned(),
     }

@@ -3,7 +3,7 @@
 use crate::number::on_scale;
 use glam::DVec2;
 use recon::object_dynamics::pushing::PushMode;
-use recon::observer::pushes::{OutlineCorner, PushInstant, PushResult, PushesEstimate};
+use recon::observer::pushes::{OutlineCorner, OutlinePoint, PushInstant, PushResult, PushesEstimate};
 use std::fmt::Write as _;
 
 const WIDTH: f64 = 640.0;
@@ -14,6 +14,8 @@ const ROOM: f64 = 64.0;
 const FORCE: f64 = 24.0;
 /// Bands below this half width, px, are drawn wider by a factor that the caption tells.
 const LEAST_BAND: f64 = 4.0;
+/// Length of the arrow to where a push tells most, px.
+const NEXT: f64 = 40.0;
 /// From a corner's ellipse to its name, px.
 const LABEL: f64 = 12.0;
 /// Half of the longest name, px.
@@ -82,6 +84,7 @@ pub(super) fn drawn(told: &PushesEstimate) -> (String, String) {
     }
     told.pushes.iter().for_each(|push| draw_push(push, told, &frame, &mut out));
     outline.corners.iter().for_each(|corner| draw_corner(corner, factor, &frame, &mut out));
+    outline.next_push().iter().for_each(|at| draw_next(at, &frame, &mut out));
     draw_scale(length, &frame, &mut out);
     out += "</svg>\n";
     let wider = if factor > 1.0 { ", drawn ten times as wide as it is" } else { "" };
@@ -92,7 +95,7 @@ pub(super) fn drawn(told: &PushesEstimate) -> (String, String) {
     };
     let caption = format!(
         "Object's frame. Blue: twice the standard deviation to either side{wider}.{corners} Solid line: touched; dotted: inferred. Each push has a dot where \
-         the finger first touched and one where it last did, with the force on the object there, in the colour of the mode."
+         the finger first touched and one where it last did, with the force on the object there, in the colour of the mode. The large arrow: a push there tells most."
     );
     (out, caption)
 }
@@ -106,9 +109,7 @@ fn band(told: &PushesEstimate, factor: f64, frame: &Frame, out: &mut String) {
         if a.normal.dot(b.normal) < 0.8 {
             continue;
         }
-        let off = |p: &recon::observer::pushes::OutlinePoint, side: f64| {
-            p.point + p.normal * (2.0 * side * factor * p.deviation)
-        };
+        let off = |p: &OutlinePoint, side: f64| p.point + p.normal * (2.0 * side * factor * p.deviation);
         let corners = frame.line([off(a, 1.0), off(b, 1.0), off(b, -1.0), off(a, -1.0)].into_iter());
         let _ = writeln!(out, "<polygon class=\"band\" points=\"{corners}\"/>");
     }
@@ -167,6 +168,19 @@ fn draw_corner(corner: &OutlineCorner, factor: f64, frame: &Frame, out: &mut Str
         out,
         "<text class=\"label\" x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">({px:.1}, {py:.1}) ± {:.1} mm</text>",
         corner.deviation() * 1e3
+    );
+}
+
+/// An arrow to where a push tells most.
+fn draw_next(at: &OutlinePoint, frame: &Frame, out: &mut String) {
+    let inward = DVec2::new(-at.normal.x, at.normal.y);
+    let tip = frame.place(at.point) - 3.0 * inward;
+    let (tail, back) = (tip - NEXT * inward, tip - 10.0 * inward);
+    let (left, right) = (back + 6.0 * inward.perp(), back - 6.0 * inward.perp());
+    let _ = writeln!(
+        out,
+        "<path class=\"next\" d=\"M{:.1} {:.1} L{:.1} {:.1} M{:.1} {:.1} L{:.1} {:.1} L{:.1} {:.1}\"><title>push here next</title></path>",
+        tail.x, tail.y, tip.x, tip.y, left.x, left.y, tip.x, tip.y, right.x, right.y
     );
 }
 
