@@ -1,5 +1,6 @@
 //! What sampled forces do between samples, and what that may be off by.
 
+use super::both::of_each;
 use super::noise::{ContactNoiseLevel, WrenchNoise, force_trace, traces};
 use super::record::{Contact, Interval, Wrench, add_noise, six, wrench};
 use crate::quadrature::running_integral;
@@ -9,7 +10,7 @@ use nalgebra::{Matrix6, Vector6};
 /// By the forces at samples of the contacts that are `felt` there.
 pub(super) fn intervals<'a, I: Iterator<Item = &'a Contact>>(
     times: &[f64],
-    felt: impl Fn(usize) -> I,
+    felt: impl Fn(usize) -> I + Sync,
     noise: &ContactNoiseLevel,
 ) -> Vec<Interval> {
     let wrenches: Vec<Wrench> = (0..times.len()).map(|k| wrench(felt(k))).collect();
@@ -22,7 +23,7 @@ pub(super) fn intervals<'a, I: Iterator<Item = &'a Contact>>(
         let noise = WrenchNoise { white, ..WrenchNoise::default() };
         Interval::trapezoid(h, [&wrenches[k - 1], &wrenches[k]], noise)
     };
-    let mut all: Vec<Interval> = (1..times.len()).map(rough).collect();
+    let mut all = of_each(times.len(), &(1..times.len()).collect::<Vec<_>>(), rough);
     smooth(&since, &wrenches, &mut all);
     let rubs = (0..times.len()).any(|k| felt(k).any(|contact| contact.planar && !contact.frictionless));
     doubt(&mut all, &wrenches, rubs);

@@ -20,10 +20,10 @@ pub(super) fn of_each<R: Send>(samples: usize, all: &[usize], of: impl Fn(usize)
 }
 
 /// The same, one after the other, of a function that takes some of them.
-pub(super) fn of_some<R: Send>(
+pub(super) fn of_some<T: Sync, R: Send>(
     samples: usize,
-    all: &[usize],
-    of: impl Fn(&[usize]) -> Vec<R> + Sync,
+    all: &[T],
+    of: impl Fn(&[T]) -> Vec<R> + Sync,
 ) -> Vec<R> {
     if samples < MANY { of(all) } else { by_halves(all, of) }
 }

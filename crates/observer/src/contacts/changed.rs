@@ -5,7 +5,7 @@
 use super::impulses;
 use super::noise::ContactNoiseLevel;
 use super::record::{Contact, Record, Wrench};
-use super::windows::{weights, windows};
+use super::windows::{Window, weights};
 use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm, MOST_PALMS};
 
@@ -65,15 +65,15 @@ struct Acting {
 }
 
 impl<'a> Averages<'a> {
-    /// Of a `record` of all samples of `log` that was averaged over windows of at most `longest`, s.
+    /// Of a `record` of all samples of `log` that was averaged over `windows`.
     pub(super) fn new(
         log: &'a ContactLog,
         noise: &ContactNoiseLevel,
         [record, average]: [&'a Record; 2],
-        longest: f64,
+        windows: &[Window],
     ) -> Self {
         let mut shares = Vec::new();
-        for (j, window) in windows(record, longest).iter().enumerate() {
+        for (j, window) in windows.iter().enumerate() {
             let (among, weights) = weights(window, &record.times);
             let contact = |k: usize| k.checked_sub(among.start).and_then(|i| weights.get(i).copied());
             let wrench = |k: usize| if window.own.contains(&k) { 1.0 / window.own.len() as f64 } else { 0.0 };

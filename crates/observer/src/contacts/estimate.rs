@@ -24,7 +24,7 @@ use super::state::Motion;
 use super::suspects::{Readings, Scores, Sensors, suspects};
 use super::unchanging::still;
 use super::verdict::{ContactEvidence, relied_on, stretches};
-use super::windows::longest;
+use super::windows::{Window, longest, windows};
 use crate::faults::{Explanation, Suspect};
 use crate::reliability::{Reason, Reliability};
 use crate::rigid::PoseErrors;
@@ -239,7 +239,8 @@ impl Source<'_> {
         let longest = longest(log, &options.noise, &units);
         let open = log.with_gaps_open(units.time());
         let log = open.as_ref().unwrap_or(log);
-        let averaged = log.averaged(longest);
+        let windows = windows(log, longest);
+        let averaged = log.averaged_over(&windows);
         let thinned = thinned(&averaged, options, &units);
         let problem = problem(thinned.as_ref().unwrap_or(&averaged), options, units);
         let exact = problem.exact && log.frictionless() && !options.planar;
@@ -275,7 +276,7 @@ impl Source<'_> {
         let lost = is_lost(evidence.settled, duration, &units);
         let told = !exact && thinned.is_none() && uncontradicted && !lost;
         let (wrong, errors) = match options.suspects && told {
-            true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, longest)),
+            true => self.suspects(&stage, &evidence, (&covariances, &motions), (log, &windows)),
             false => Default::default(),
         };
         let covariances = covariances.with_errors(errors);
@@ -340,18 +341,18 @@ impl Source<'_> {
         if sharp { stage.sharpened() } else { Some(stage) }
     }
 
-    /// Scores of constants of the sensors at a solution whose contacts were averaged over windows of at most `longest`, s; where something contradicts
+    /// Scores of constants of the sensors at a solution whose contacts were averaged over `windows`; where something contradicts
     /// it, what explains that; and errors that these constants may make.
     fn suspects(
         &self,
         stage: &Stage,
         evidence: &ContactEvidence,
         (covariances, motions): (&Covariances<CONSTANTS>, &[(Motion, Deviations)]),
-        (record, longest): (&Record, f64),
+        (record, windows): (&Record, &[Window]),
     ) -> (Wrong, Vec<Step<CONSTANTS>>) {
         let Stage { problem, solved, free, .. } = stage;
         let told = (&self.options.noise, &self.units);
-        let readings = Readings::new(self.log, told, [record, problem.record], longest);
+        let readings = Readings::new(self.log, told, [record, problem.record], windows);
         let sensors = Sensors::new(&readings, motions, solved.unknowns.body);
         let scores = Scores::new(&sensors, problem, solved);
         let (suspects, errors) =

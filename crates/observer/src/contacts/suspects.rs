@@ -21,6 +21,7 @@ use super::solve::{Covariances, Solved, Step};
 use super::state::{Motion, Tangent};
 use super::stated_body::{CONSTANTS_OF_BODY, StatedBody};
 use super::verdict::ContactEvidence;
+use super::windows::Window;
 use crate::doubted;
 use crate::faults::{Constant, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
@@ -46,17 +47,17 @@ pub(super) struct Readings<'a> {
 }
 
 impl<'a> Readings<'a> {
-    /// Of `log`, whose record was averaged over windows of at most `longest`, s.
+    /// Of `log`, whose record was averaged over `windows`.
     pub(super) fn new(
         log: &'a ContactLog,
         (noise, units): (&ContactNoiseLevel, &Units),
         records: [&'a Record; 2],
-        longest: f64,
+        windows: &[Window],
     ) -> Self {
         let slopes =
             both(log.times().len(), || slopes_of_forces(log, units), || slopes_of_contacts(log, units))
                 .into();
-        Self { log, slopes, averages: Averages::new(log, noise, records, longest) }
+        Self { log, slopes, averages: Averages::new(log, noise, records, windows) }
     }
 }
 

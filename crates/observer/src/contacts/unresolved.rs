@@ -48,10 +48,11 @@ fn missed(stencils: &[[DVec3; STENCIL]], noise: f64) -> f64 {
         let sum =
             |of: &[DVec3; STENCIL]| of.iter().zip(weights).map(|(f, weight)| *f * *weight).sum::<DVec3>();
         let mut squares: Vec<f64> = stencils.iter().map(|of| sum(of).length_squared()).collect();
-        squares.sort_by(f64::total_cmp);
-        let median = squares.get(squares.len() / 2).copied().unwrap_or(0.0);
+        let (count, middle) = (squares.len().max(1), squares.len() / 2);
+        let median =
+            if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 };
         let by_noise = noise * weights.iter().map(|weight| weight * weight).sum::<f64>();
-        (median - by_noise * (1.0 + CHANCE / (squares.len().max(1) as f64).sqrt())).max(0.0)
+        (median - by_noise * (1.0 + CHANCE / (count as f64).sqrt())).max(0.0)
     };
     let [fourth, sixth] = [&FOURTH, &SIXTH].map(beyond);
     if sixth < fourth { sixth * (sixth / fourth) } else { sixth }

@@ -4,6 +4,7 @@
 //! both are of one size a node follows its own contact, and least squares over so many nodes find the body wrong by several of their
 //! deviations. A contact averaged over a window leaves the condition in the window's middle as it is, with less noise.
 
+use super::both::of_some;
 use super::impulses::kink;
 use super::noise::{ContactNoiseLevel, WrenchNoise};
 use super::problem::Units;
@@ -206,17 +207,22 @@ pub(super) fn weights(window: &Window, times: &[f64]) -> (Range<usize>, Vec<f64>
 }
 
 impl Record {
-    /// One sample a window, at its middle.
+    /// One sample a window of at most `longest`, s, at its middle.
     pub(super) fn averaged(&self, longest: f64) -> Self {
-        let windows = windows(self, longest);
+        self.averaged_over(&windows(self, longest))
+    }
+
+    /// The same of its `windows`.
+    pub(super) fn averaged_over(&self, windows: &[Window]) -> Self {
         let middles: Vec<usize> = windows.iter().map(Window::middle).collect();
         let wrench = |window: &Window| {
             let sum = self.wrenches[window.own.clone()].iter().fold(Wrench::default(), |sum, w| sum + *w);
             sum * (1.0 / window.own.len() as f64)
         };
-        let contacts = windows.iter().map(|window| self.smoothed(window)).collect();
+        let smoothed = |some: &[Window]| some.iter().map(|window| self.smoothed(window)).collect();
+        let contacts = of_some(self.times.len(), windows, smoothed);
         let mut averaged = self.picked(&middles, contacts, windows.iter().map(wrench).collect());
-        averaged.share_errors(self, &windows);
+        averaged.share_errors(self, windows);
         averaged
     }
 

@@ -23,7 +23,7 @@ use crate::contacts::solve::Solved;
 use crate::contacts::stage::Stage;
 use crate::contacts::state::Motion;
 use crate::contacts::suspects::Readings;
-use crate::contacts::windows::longest;
+use crate::contacts::windows::{longest, windows};
 use nalgebra::Matrix6;
 use object_dynamics::ContactLog;
 use std::collections::VecDeque;
@@ -197,7 +197,8 @@ impl Window {
         let longest = longest(&record, &self.options.noise, &units);
         let open = record.with_gaps_open(natural);
         let record = open.as_ref().unwrap_or(&record);
-        let averaged = record.averaged(longest);
+        let windows = windows(record, longest);
+        let averaged = record.averaged_over(&windows);
         let thinned = thinned(&averaged, &self.options, &units);
         let mut problem = problem(thinned.as_ref().unwrap_or(&averaged), &self.options, units);
         let free = problem.body;
@@ -236,7 +237,7 @@ impl Window {
         let mut of = Of { problem, solved, covariances, against, open, lasting, unresolved };
         if self.options.suspects && !problem.exact && thinned.is_none() && of.is_sound() {
             let told = (&self.options.noise, &units);
-            let readings = Readings::new(log, told, [record, problem.record], longest);
+            let readings = Readings::new(log, told, [record, problem.record], &windows);
             of.doubt(record, &readings);
         }
         let solution = self.taken(&of, kept, (GAP * natural, record.missed_in_world(GAP * natural)));

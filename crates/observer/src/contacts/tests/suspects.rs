@@ -3,6 +3,7 @@
 use super::*;
 use crate::contacts::changed::{Averages, ChangeBy};
 use crate::contacts::record::Record;
+use crate::contacts::windows::windows;
 use crate::faults::{Assumption, Constant, Suspect};
 use crate::reliability::{Reason, Reliability};
 
@@ -167,7 +168,7 @@ fn changed_averages_are_those_of_the_changed_log() {
     let record = |log: &ContactLog| Record::new(log, &options).unwrap();
     let (whole, by) = (record(&log), 1e-3);
     let average = whole.averaged(longest);
-    let averages = Averages::new(&log, &options.noise, [&whole, &average], longest);
+    let averages = Averages::new(&log, &options.noise, [&whole, &average], &windows(&whole, longest));
     let along = |k: usize| log.palms()[1].motion(k).pose.R_WP * (DVec3::X * by);
     let moved = averages.changed(None, |contact| match contact.palm {
         1 => Some(ChangeBy { c: along(contact.sample), ..ChangeBy::default() }),

@@ -56,7 +56,7 @@ pub fn estimated_mode_spans(
 pub(super) fn followed_mode_spans(followed: &[StreamEstimate], palm: usize) -> Vec<ModeSpan> {
     let told = || followed.iter().filter_map(|of| Some((of.t, of.modes.as_ref()?)));
     let one = |(t, modes): (f64, &StreamModes)| (t, (modes.decided[palm], tenths(&modes.odds[palm])));
-    let (Some((start, first)), Some((end, _))) = (told().next().map(one), told().last()) else {
+    let (Some((start, first)), Some((end, _))) = (told().next().map(one), told().next_back()) else {
         return Vec::new();
     };
     sure_spans(first, [start, end], told().map(one))
