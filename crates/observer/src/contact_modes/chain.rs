@@ -3,6 +3,7 @@
 use super::bins::Bins;
 use super::contact::{Force, SlipRead};
 use super::density::Ratio;
+use super::foretold::Foretold;
 use super::friction::Cell;
 use super::steps::{EDGE, PACES, SPEEDS, Steps};
 
@@ -72,8 +73,8 @@ impl Likelihood {
             Force::Silent => self.set(0.0, 0.0),
             Force::Off => self.set(0.0, f64::NEG_INFINITY),
             Force::Touches => self.set(f64::NEG_INFINITY, 0.0),
-            Force::Presses { ratio, touching, off } => {
-                self.of_ratio(steps, ratio, cell);
+            Force::Presses { ratio, touching, off, foretold } => {
+                self.of_ratio(steps, ratio, cell, foretold);
                 self.off = off - touching;
             }
         }
@@ -101,13 +102,14 @@ impl Likelihood {
     }
 
     /// Of a ratio, at the friction of this cell; those of the speeds and of the edge are all the same.
-    fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell) {
+    fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell, foretold: &Foretold) {
         self.edge = ratio.log_at(cell.mean, cell.variance);
         self.speeds.fill(self.edge);
         let friction = steps.friction;
         for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
             let spread = friction.powi(2) * steps.ratios.variance(k);
-            *log = ratio.log_at(friction * steps.ratios.middle(k), spread);
+            let edges = [steps.ratios.lower[k], steps.ratios.upper[k]].map(|edge| friction * edge);
+            *log = foretold.log_in(ratio, edges, spread) + ratio.log_direction();
         }
     }
 }

@@ -5,6 +5,7 @@ use super::contact::{Contact, Force, Modes, SlipRead};
 use super::density::Slip;
 use super::doubt::{ContactModesDoubt, Left, Told};
 use super::error::ContactModesError;
+use super::foretold::Foretold;
 use super::friction::{ContactFriction, FrictionGrid, LearnedFriction, together};
 use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
@@ -52,6 +53,8 @@ pub struct ContactModes {
     rows: Vec<Row>,
     /// Of the last sample.
     forces: Vec<Force>,
+    /// What the ratios of each contact say of the next one.
+    foretold: Vec<Foretold>,
     /// The same, in the world's axes and in natural units.
     slips: Vec<Option<(ContactSlip, Slip)>>,
     left: Vec<Left>,
@@ -113,6 +116,7 @@ impl ContactModes {
             told: vec![ContactMode::Off; count],
             rows: vec![Row::NONE; count],
             forces: vec![Force::Silent; count],
+            foretold: vec![Foretold::default(); count],
             slips: vec![None; count],
             left,
             samples: 0,
@@ -202,6 +206,7 @@ impl ContactModes {
             let grid = &self.grids[self.grid_of[i]];
             contact.predict(grid);
             self.forces[i] = seen[i].force(&self.options);
+            self.foretold[i].tell(dt, &mut self.forces[i]);
         }
     }
 

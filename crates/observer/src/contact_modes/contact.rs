@@ -4,6 +4,7 @@ use super::asleep::Followed;
 use super::bins::Bins;
 use super::chain::{Chain, Likelihood};
 use super::density::{Ratio, Slip};
+use super::foretold::Foretold;
 use super::friction::{Cell, FrictionGrid, Guess, guessed};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
@@ -65,6 +66,8 @@ pub(super) enum Force {
         /// is known to touch.
         touching: f64,
         off: f64,
+        /// What the ratios before say of this one.
+        foretold: Foretold,
     },
 }
 

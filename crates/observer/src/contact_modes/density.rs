@@ -34,7 +34,7 @@ pub(super) struct Slip {
 impl Ratio {
     /// `rho` may have any direction with the same density: 1 over the circle. A ratio of zero has none; its density is that
     /// of a thousandth of a deviation, and falls out of the odds of slide against stick.
-    fn log_direction(&self) -> f64 {
+    pub(super) fn log_direction(&self) -> f64 {
         -(TAU * self.size.max(1e-3 * self.deviation)).ln()
     }
 

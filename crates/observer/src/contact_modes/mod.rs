@@ -3,7 +3,7 @@
 //!
 //! Each mode gives a density of the same outputs (`density.rs`), and remembers what changes slowly: sliding its speed, sticking
 //! the ratio of friction to normal force, on bins (`bins.rs`, `steps.rs`, `chain.rs`). A friction that is not known is carried
-//! as a grid (`friction.rs`, `contact.rs`), of which those are followed that are near the ratio (`asleep.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
+//! as a grid (`friction.rs`, `contact.rs`), of which those are followed that are near the ratio (`asleep.rs`); where in its bin a ratio is, those before it say (`foretold.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
 //! What is left of readings where modes are told is held against their noise (`doubt.rs`), and whether forces go better
 //! with slips of before is followed beside them (`late.rs`). `classifier.rs` is the way of a sample.
 //!
@@ -33,6 +33,7 @@ mod contact;
 mod density;
 mod doubt;
 mod error;
+mod foretold;
 mod friction;
 mod late;
 pub(crate) mod normal;

@@ -5,6 +5,7 @@ use super::chain::{Chain, Likelihood};
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::{Force, SlipRead};
 use super::doubt::{Left, Told};
+use super::foretold::Foretold;
 use super::friction::{Cell, SURE};
 use super::late::{Brought, Late};
 use super::options::ContactModesOptions;
@@ -89,9 +90,11 @@ impl Pace {
         let at = friction.map(|friction| self.at(friction));
         let speed = options.natural_speed;
         let mut left = Left::new(at.as_ref().map(|at| Late::new(&at.steps[0], speed)));
+        let mut foretold = Foretold::default();
         for (k, seen) in seen.iter().enumerate() {
             let reading = seen.reading();
-            let force = seen.force(options);
+            let mut force = seen.force(options);
+            foretold.tell(self.steps[k], &mut force);
             let slip = reading.and_then(|reading| reading.slip.zip(Some(reading.direction())));
             let turned = slip.map(|(slip, (u, _))| turned(&slip.velocity, &slip.covariance, &u, speed));
             let slip = slip.map(|(slip, _)| (slip, self.weights[k]));
@@ -123,7 +126,13 @@ pub(super) struct Passage {
 
 impl Passage {
     pub(super) fn new(seen: &[ContactSeen], pace: &Pace, options: &ContactModesOptions) -> Self {
-        let said = seen.iter().enumerate().map(|(k, seen)| Said::new(seen, pace, k, options)).collect();
+        let mut foretold = Foretold::default();
+        let one = |(k, seen): (usize, &ContactSeen)| {
+            let mut said = Said::new(seen, pace, k, options);
+            foretold.tell(pace.steps[k], &mut said.force);
+            said
+        };
+        let said = seen.iter().enumerate().map(one).collect();
         Self { said }
     }
 

@@ -3,6 +3,7 @@
 use super::contact::Force;
 use super::density::{Ratio, Slip};
 use super::error::ContactModesError;
+use super::foretold::Foretold;
 use super::normal::log_density;
 use super::options::ContactModesOptions;
 use nalgebra::{Matrix2, Vector2};
@@ -150,7 +151,7 @@ impl ContactReading {
         } else {
             log_density(normal, unloaded.powi(2)) + ratio.log_off(unloaded / normal)
         };
-        Force::Presses { ratio, touching, off }
+        Force::Presses { ratio, touching, off, foretold: Foretold::default() }
     }
 
     /// The direction of friction, and its deviation, rad; some direction where there is no friction.

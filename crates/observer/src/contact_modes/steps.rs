@@ -21,6 +21,8 @@ const SPEED_STEPS: [f64; PACES] = [0.0055, 0.06 * 0.0055];
 const RATIO_STEPS: [f64; PACES] = [0.002, 0.1 * 0.002];
 /// Probability a millisecond that the pace changes.
 const PACED: f64 = 0.002;
+/// Share of what is known of the pace that is given up for that from sample to sample.
+pub(super) const CHANGED: f64 = PACES as f64 * PACED;
 /// Units for which a ratio goes on as it goes: what presses and turns a body has inertia. Were it a walk over the time without samples, it would come
 /// less far than it does, and what begins to slide there would be held for sticking.
 const SMOOTH: f64 = 30.0;
@@ -176,6 +178,11 @@ impl Steps {
         self.set(dt);
         1
     }
+}
+
+/// Deviation of the change of a ratio over a time, s, at one of the paces.
+pub(super) fn walked_ratio(pace: usize, dt: f64) -> f64 {
+    RATIO_STEPS[pace] * of_smooth(dt / UNIT)
 }
 
 /// By how much more a ratio changes in so many units than in one: as a walk within one, at the same rate from there on, and as a walk of steps of
