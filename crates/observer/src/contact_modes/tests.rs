@@ -81,6 +81,31 @@ fn clear_cases_are_told_and_a_loss_is_seen() {
     assert_eq!(one(ContactFriction::Known(0.3)).odds(1), None);
 }
 
+/// Of two contacts of one unknown friction, with forces known to 0.1 %, one slides while the ratio of the other falls slowly through the grid: its friction is not given up
+/// for those that the other one passes by (bins are narrow next to each, and foretold its ratio the better).
+#[test]
+fn a_friction_that_is_known_is_kept_while_another_ratio_passes_by() {
+    let precise = |ratio: f64, slip: f64, k: u32| {
+        let mut random = crate::random::Normal::seeded(u64::from(k));
+        let mut noise = || 1e-3 * random.draw();
+        let friction = Vector2::new(ratio + noise(), 0.0);
+        let velocity = Vector2::new(-slip + 0.6 * noise(), 0.6 * noise());
+        let slip = Some(ContactSlip { velocity, covariance: Matrix2::identity() * 3.6e-7 });
+        let (normal_force, force_deviation, touches) = (1.0 + noise(), 1e-3, false);
+        ContactSeen::Read(ContactReading { normal_force, friction, force_deviation, slip, touches })
+    };
+    let mut options = options();
+    options.slip_errors_last = 0.05;
+    let mut modes = ContactModes::new(&[ContactFriction::Unknown { material: 1 }; 2], options).unwrap();
+    for k in 0..400 {
+        let falls = 0.395 - 2e-4 * f64::from(k);
+        modes.push(DT, &[precise(0.408, 0.02, 2 * k), precise(falls, 0.0, 2 * k + 1)]).unwrap();
+    }
+    let (odds, learned) = (modes.odds(0).unwrap(), modes.friction(0).unwrap());
+    assert!(odds.slide > 0.99 && modes.odds(1).unwrap().stick > 0.99, "{odds:?}");
+    assert!((learned.coefficient - 0.408).abs() < 2.0 * learned.deviation, "{learned:?}");
+}
+
 /// The density of the first sample against sums over the cells' own densities, written down directly.
 #[test]
 fn the_density_of_the_first_sample() {
