@@ -256,7 +256,8 @@ fn options(log: &ContactLog, scene: &Scene, together: usize) -> Result<ContactOp
         ContactNoiseLevel::floor_of_log(log, scene.gravity, scene.size).ok_or_else(|| no_size(log))?;
     let floor = sensors.contact_speed_std.unwrap_or(floor);
     // Impulses beside forces are read where their noise is stated.
-    let alone = !log.palms().iter().all(by_force);
+    let has_impulses = |palm: &LoggedPalm| (0..log.times().len()).any(|k| palm.impulse(k).is_some());
+    let alone = !log.palms().iter().all(by_force) && log.palms().iter().any(has_impulses);
     let stated =
         !alone && sensors.contact_std.is_some() && sensors.force_std.or(sensors.force_share).is_some();
     let rough = if stated {

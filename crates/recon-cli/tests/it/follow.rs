@@ -111,8 +111,10 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     assert_eq!(begin, lines(&table, 1 + 11));
     // What was followed before a row that is none is not lost.
     scratch.write("torn.csv", &(lines(&log.text(), 1 + 101) + "1.01,0.5\n"));
-    let torn = scratch.run(&["follow", "torn.csv", "--scene", "scene.toml", "-o", "kept.csv"]);
+    let args = ["follow", "torn.csv", "--scene", "scene.toml", "-o", "kept.csv", "--report", "kept.html"];
+    let torn = scratch.run(&args);
     assert_eq!(torn.code, Some(3), "{}", torn.stderr);
+    assert!(scratch.read("kept.html").contains("<dd>100<small>"), "samples until then");
     assert!(torn.stderr.contains("until then is in kept.csv"), "{}", torn.stderr);
     // A sample is taken once it is seen that another one follows.
     assert_eq!(scratch.read("kept.csv"), lines(&table, 1 + 10));

@@ -5,7 +5,6 @@ mod page;
 mod spans;
 mod words;
 
-use super::simulate::write;
 use crate::cli::FollowArgs;
 use crate::console::{Console, listened};
 use crate::error::{CliError, Outcome};
@@ -87,10 +86,11 @@ pub(crate) fn run(args: &FollowArgs, console: &Console) -> Result<Outcome, CliEr
     };
     drop(progress);
     // Whatever ended it, the page shows what was followed until then.
-    if let Some((path, target)) = args.report.as_ref().zip(page) {
-        followed.show(&args.log, path, target)?;
-    }
-    match ended? {
+    let page = args.report.as_ref().zip(page);
+    let shown = page.map_or(Ok(()), |(path, target)| followed.show(&args.log, path, target));
+    let ended = ended?;
+    shown?;
+    match ended {
         Some(outcome) => Ok(outcome),
         None => followed.tell(console, [output, args.report.as_ref()].map(|path| path.map(PathBuf::as_path))),
     }
@@ -208,6 +208,7 @@ impl Run<'_> {
     ) -> Result<(), Failure> {
         let mut rows = Rows { every: self.every, first: None, latest: -1.0 };
         let palms = self.stream.palms_with_modes();
+        followed.palms = palms;
         if !self.json {
             write_stream_header(palms, &mut to)?;
         }
@@ -230,7 +231,7 @@ impl Run<'_> {
         }
         to.flush()?;
         followed.left_out = samples.left_out + self.stream.left_out();
-        (followed.palms, followed.samples, followed.why) = (palms, samples.rows, samples.why);
+        (followed.samples, followed.why) = (samples.rows, samples.why);
         Ok(())
     }
 
@@ -312,15 +313,20 @@ impl Followed {
         last.modes.as_ref().map(|modes| words::told(modes, self.palms)).unwrap_or_default()
     }
 
-    /// Writes the page, if there is anything to show.
+    /// Writes the page, if there is anything to show; after an interruption too, as the rows until then stay.
     fn show(&mut self, log: &Path, path: &Path, target: FileTarget) -> Result<(), CliError> {
         let (Some(last), Some(motion)) = (self.last, self.shown.take()) else { return Ok(()) };
         let mut known = self.known(&last);
         known[..1].make_ascii_uppercase();
-        let title =
-            log.file_name().map_or_else(|| "log".to_owned(), |name| name.to_string_lossy().into_owned());
+        let title = match log.file_name() {
+            _ if is_standard_output(log) => "standard input".to_owned(),
+            name => name.unwrap_or(log.as_os_str()).to_string_lossy().into_owned(),
+        };
         let page = page::page(self, motion, title, (known + ".", &self.told(&last).doubts));
-        write(target, path, |to| write_followed_report(&page, to))
+        let mut file = target.begin()?;
+        let failed = |source| OutputError::Io { action: "write", path: path.to_owned(), source };
+        write_followed_report(&page, &mut file).map_err(failed)?;
+        Ok(file.commit()?)
     }
 
     fn tell(&self, console: &Console, [output, page]: [Option<&Path>; 2]) -> Result<Outcome, CliError> {
