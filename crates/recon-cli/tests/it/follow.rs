@@ -62,6 +62,9 @@ fn the_motion_is_followed_from_a_file_and_from_a_pipe() {
     // What is read is not written over.
     let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "--report", "log.csv"]);
     assert_eq!(run.code, Some(5), "{}{}", run.stdout, run.stderr);
+    // Nor what is written, whether it is there yet or not.
+    let run = scratch.run(&["follow", "log.csv", "--scene", "scene.toml", "-o", "new", "--report", "./new"]);
+    assert_eq!(run.code, Some(5), "{}{}", run.stdout, run.stderr);
     let table = scratch.read("motion.csv");
     let motion = Table::parse(&table);
     assert_eq!(motion.rows.len(), 31);

@@ -48,9 +48,16 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// The first of `inputs` that is the file at `place`, by name or by another link to it.
+/// The first of `inputs` that is the file at `place`, by name or by another link to it; where nothing is there yet, by name.
 pub(super) fn input_at<'a>(place: &Path, inputs: &'a [PathBuf]) -> Option<&'a Path> {
-    let there = fs::metadata(place).ok().filter(Metadata::is_file)?;
+    let there = match fs::metadata(place) {
+        Ok(is) => Some(is).filter(Metadata::is_file)?,
+        // Another result that is yet to be written.
+        Err(_) => {
+            let named = |input: &&PathBuf| resolved(opened(input)).is_ok_and(|is| is == place);
+            return inputs.iter().find(named).map(PathBuf::as_path);
+        }
+    };
     let same = |input: &&PathBuf| {
         fs::metadata(opened(input)).is_ok_and(|is| is_same(&is, &there))
             || fs::canonicalize(opened(input)).is_ok_and(|is| is == place)
