@@ -1,6 +1,6 @@
 //! What the ratios before say of the next one.
 //!
-//! Bins of the ratio are as wide as a hundredth of it, and narrow only next to the cone, where sticking ends. Forces that are known better than a bin is wide
+//! Bins of the ratio are three hundredths of it wide, and narrow only next to the cone, where sticking ends. Forces that are known better than a bin is wide
 //! say where in it the ratio is, and so where the next one will be. Were that left out, frictions next to whose cones a ratio happens to be would foretell it
 //! the better for their narrow bins, at each sample once more, and a friction that was known from sliding would be given up for them.
 

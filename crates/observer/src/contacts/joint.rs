@@ -49,7 +49,7 @@ pub(super) fn pose_errors(
         nodes.iter().zip(&poses).zip(&steps).map(moved).collect()
     };
     let all = samples.last().map_or(0, |last| last + 1);
-    let draws = of_each(all, &std::array::from_fn::<_, DRAWS, _>(|number| number), draw);
+    let draws = of_each(all, &(0..DRAWS).collect::<Vec<_>>(), draw);
     let lasting = lasting(problem, solved);
     PoseErrors::from_draws(
         nodes.iter().map(|&j| samples[j]).collect(),

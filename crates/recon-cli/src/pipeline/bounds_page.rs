@@ -1,14 +1,13 @@
 //! The page of bounds, in space and in the plane.
 
 use super::bounds::BoundsResult;
+use super::evidence::row;
 use super::fitted::unit_of;
 use super::plane::PlanarBounds;
 use super::views::views;
 use glam::DVec3;
 use recon_io::EvidenceValue::{Count, Number, Text};
-use recon_io::{
-    Evidence, EvidenceValue, Fact, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to,
-};
+use recon_io::{Evidence, Fact, FigurePanel, FiguresPage, Level, ShapeMarks, Verdict, brief, brief_to};
 use serde_json::Value;
 
 const KICKER: &str = "What touch guarantees about a shape";
@@ -256,9 +255,4 @@ fn surface(of: &Value) -> Vec<Evidence> {
     ];
     rows.extend(in_metres(of, &lengths));
     rows
-}
-
-fn row(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
-    let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
-    Evidence { key, name, value, unit, meaning, level: Level::Neutral }
 }

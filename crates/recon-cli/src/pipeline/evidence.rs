@@ -4,18 +4,21 @@ use glam::DMat3;
 use recon::observer::rigid::{PoseAxes, PoseErrors};
 use recon_io::{Evidence, EvidenceValue, Level};
 
+/// One that speaks neither for the result nor against it.
+pub(crate) fn row(key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str) -> Evidence {
+    let [key, name, unit, meaning] = [key, name, unit, meaning].map(str::to_owned);
+    Evidence { key, name, value, unit, meaning, level: Level::Neutral }
+}
+
 /// Of a log that was thinned by means.
 pub(super) fn samples_together(together: usize) -> Evidence {
-    Evidence {
-        key: "samples_together".to_owned(),
-        name: "Rows in a sample".to_owned(),
-        value: EvidenceValue::Count(together as u64),
-        unit: String::new(),
-        meaning:
-            "The log is denser than its motion needs: the means of so many rows are taken as one sample."
-                .to_owned(),
-        level: Level::Neutral,
-    }
+    row(
+        "samples_together",
+        "Rows in a sample",
+        EvidenceValue::Count(together as u64),
+        "",
+        "The log is denser than its motion needs: the means of so many rows are taken as one sample.",
+    )
 }
 
 /// What bounds hold for, at which odds and in which axes.
@@ -25,14 +28,6 @@ pub(super) fn of_bounds(errors: &PoseErrors, confidence: f64) -> [Evidence; 4] {
     let axes = match errors.axes() {
         PoseAxes::Principal => "principal",
         PoseAxes::MeanPose => "mean pose",
-    };
-    let row = |key: &str, name: &str, value, unit: &str, meaning: &str| Evidence {
-        key: key.to_owned(),
-        name: name.to_owned(),
-        value,
-        unit: unit.to_owned(),
-        meaning: meaning.to_owned(),
-        level: Level::Neutral,
     };
     let number = EvidenceValue::Number;
     [

@@ -50,6 +50,7 @@ pub(crate) use concave::concave_bounds;
 pub(crate) use contacts::{ContactRun, simulate_contacts};
 pub(crate) use doubts::doubtful_fit;
 pub(crate) use estimate::{Asked, Estimated, estimated, estimated_planes};
+pub(crate) use evidence::row as evidence_row;
 pub(crate) use exploration::{
     CONFIDENCE, Descending, Explored, Following, InPlane, InSpace, Placed, STATE, Settings, State, explored,
     felt, followed, goal_of, next_motion, next_stroke, next_touch, rolled, sensed, stroked, until_of,

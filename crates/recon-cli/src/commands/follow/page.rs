@@ -1,10 +1,11 @@
 //! The page of a motion that was followed.
 
 use super::{Followed, deviations};
+use crate::pipeline::evidence_row as row;
 use recon::observer::contacts::stream::StreamStage;
 use recon_io::{Evidence, EvidenceValue, FollowedMotion, FollowedPage, Level, Verdict, brief_to};
 
-/// Of what was followed until now; `told` is what there is to know of contact modes, `text` how it went in words.
+/// Of what was followed until now; `text` is how it went in words, `doubts` what contradicts the readings that contact modes rest on.
 pub(super) fn page(
     followed: &Followed,
     motion: FollowedMotion,
@@ -51,14 +52,6 @@ pub(super) fn page(
 /// What is known at the end, and how well.
 fn evidence(followed: &Followed) -> Vec<Evidence> {
     let Some(last) = &followed.last else { return Vec::new() };
-    let row = |key: &str, name: &str, value: EvidenceValue, unit: &str, meaning: &str| Evidence {
-        key: key.to_owned(),
-        name: name.to_owned(),
-        value,
-        unit: unit.to_owned(),
-        meaning: meaning.to_owned(),
-        level: Level::Neutral,
-    };
     let mut rows = Vec::new();
     if let Some(motion) = &last.motion {
         let number = EvidenceValue::Number;

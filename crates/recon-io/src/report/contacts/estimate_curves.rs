@@ -11,8 +11,8 @@ use glam::DVec3;
 use recon::object_dynamics::LoggedPalm;
 
 /// Half the height of bands of uncertainty in standard deviations: 95 % of a normal variable lie within.
-const BAND: f64 = 1.96;
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const BAND: f64 = 1.96;
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl EstimateData {
     /// The panels of curves: estimates with their bands, truth dashed.

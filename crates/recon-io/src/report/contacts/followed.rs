@@ -1,7 +1,9 @@
 //! The page of a motion that was followed while its log came.
 
+use super::super::page::of_body;
 use super::super::thin::thin;
 use super::super::{Evidence, Verdict};
+use super::estimate_curves::{AXES, BAND};
 use super::estimate_page::{EstimatePage, doubtful_spans, sample_gaps};
 use super::picture::Pictures;
 use super::spans::{ModeSpan, followed_mode_spans};
@@ -11,9 +13,6 @@ use glam::DVec3;
 use recon::observer::contacts::stream::{StreamEstimate, StreamMotion, StreamStage};
 use std::io::{self, Write};
 
-/// Half the height of bands of uncertainty in standard deviations: 95 % of a normal variable lie within.
-const BAND: f64 = 1.96;
-const AXES: [&str; 3] = ["x", "y", "z"];
 /// Estimates that are kept at most: more than a page shows.
 const MOST: usize = 4000;
 
@@ -81,7 +80,7 @@ pub fn write_followed_report(page: &FollowedPage, to: impl Write) -> io::Result<
         ("Samples", samples.to_string(), ""),
         ("Relied on", brief_to(3, share), "%"),
     ];
-    facts.extend(super::super::page::of_body(&page.evidence));
+    facts.extend(of_body(&page.evidence));
     let spans: Vec<Vec<ModeSpan>> = (0..page.palms).map(|palm| followed_mode_spans(kept, palm)).collect();
     EstimatePage {
         kicker: "Motion, sample by sample as its log came",
