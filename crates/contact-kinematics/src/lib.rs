@@ -32,9 +32,9 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod at_once;
 mod contact;
 
-mod halves;
 mod motion_law;
 mod palm;
 pub mod planar;
@@ -42,12 +42,12 @@ mod stop;
 mod support;
 mod surface;
 
+pub use at_once::{at_once, in_parts};
 pub use contact::{
     Contact, ContactCurve, ContactRates, ContactSupport, CurveError, CurvePoint, Darboux, ThreeContacts,
     acceleration_defect, body_normal, body_normal_rate, contact_curve_rates, contact_velocity, darboux,
     radius_rate, separation_rates,
 };
-pub use halves::{at_once, by_halves};
 pub use motion_law::MotionLaw;
 pub use palm::{Palm, PalmError, PalmFrame, PalmState, PalmTriple};
 pub use stop::{Stopped, is_stopped, unless_stopped};

@@ -15,6 +15,8 @@ const CHANCE: f64 = 3.3;
 /// Groups of forces by their size, at most, and the readings in one, at least.
 const GROUPS: usize = 12;
 const LEAST_IN_GROUP: usize = 40;
+/// Rows of a sensor that tell its noise, at most: of long logs every so many-th does.
+const TELL: usize = 20_000;
 /// Share of readings equal to the one before from which on they are counted in steps.
 const REPEATED: f64 = 0.1;
 /// Times from sample to sample that are alike but for rounding, as a share of a row's.
@@ -62,9 +64,10 @@ impl Rough {
                 self.steps.extend(axes[k].of(*b - *a));
             }
         }
+        let every = times.len().div_ceil(TELL).max(1);
         for (all, count) in self.all.iter_mut().zip(IN_A_ROW) {
             let mut weights = Weights::default();
-            for (k, row) in readings.windows(count).enumerate() {
+            for (k, row) in readings.windows(count).enumerate().step_by(every) {
                 let middle = k + count / 2;
                 let weights = weights.at(&times[k..k + count]);
                 let weighed = row.iter().zip(weights).map(|(reading, weight)| Some((*reading)? * *weight));

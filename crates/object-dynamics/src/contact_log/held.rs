@@ -70,10 +70,12 @@ fn held(readings: &[(usize, [f64; 3])]) -> Option<(f64, Vec<usize>)> {
     }
     // Of what rests one reading is told long, and others once.
     let (_, &mut median, _) = (runs.len() >= FEWEST).then(|| runs.select_nth_unstable(new.len() / 2))?;
+    if median <= 1 {
+        return None;
+    }
     new.sort_unstable();
     let recur = new.windows(2).filter(|pair| pair[0] == pair[1]).count();
-    let held = median > 1 && recur * 100 <= IN_STEPS * new.len();
-    held.then(|| (readings.len() as f64 / new.len() as f64, again))
+    (recur * 100 <= IN_STEPS * new.len()).then(|| (readings.len() as f64 / new.len() as f64, again))
 }
 
 fn is_same(a: &[f64; 3], b: &[f64; 3]) -> bool {

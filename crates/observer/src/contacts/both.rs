@@ -1,6 +1,6 @@
 //! Work on long logs on two cores at once.
 
-use contact_kinematics::{at_once, by_halves};
+use contact_kinematics::{at_once, in_parts};
 
 /// Samples from which on two threads read a log. Of whole logs alone: the windows of a stream are shorter, and leave the other cores to the robot.
 const MANY: usize = 5000;
@@ -25,5 +25,5 @@ pub(super) fn of_some<T: Sync, R: Send>(
     all: &[T],
     of: impl Fn(&[T]) -> Vec<R> + Sync,
 ) -> Vec<R> {
-    if samples < MANY { of(all) } else { by_halves(all, of) }
+    if samples < MANY { of(all) } else { in_parts(all, of) }
 }

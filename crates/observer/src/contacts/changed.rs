@@ -41,9 +41,9 @@ pub(super) struct Averages<'a> {
     felt: Vec<Vec<Felt>>,
     /// By sample.
     shares: Vec<Share>,
-    /// Of each sample the first of its shares, and the interval of the average that the one before it lies in.
+    /// Of each sample the first of its shares, and the interval before it.
     first_shares: Vec<usize>,
-    nodes: Vec<usize>,
+    before: Vec<Before>,
     /// Palms whose impulses are read.
     impulses: [Option<&'a LoggedPalm>; MOST_PALMS],
 }
@@ -55,6 +55,15 @@ struct Share {
     /// In its contacts, and in its mean wrench.
     contact: f64,
     wrench: f64,
+}
+
+/// The interval before a sample.
+struct Before {
+    /// How long it is, s, and how long after the start of the average's interval that it lies in it begins.
+    h: f64,
+    since: f64,
+    /// Number of that.
+    node: usize,
 }
 
 /// What acts otherwise at a sample through one palm: a wrench, and where its impulse is read, by where it is touched.
@@ -72,7 +81,7 @@ impl<'a> Averages<'a> {
         [record, average]: [&'a Record; 2],
         windows: &[Window],
     ) -> Self {
-        let mut shares = Vec::new();
+        let mut shares = Vec::with_capacity(windows.iter().map(|window| window.around.len()).sum());
         for (j, window) in windows.iter().enumerate() {
             let (among, weights) = weights(window, &record.times);
             let contact = |k: usize| k.checked_sub(among.start).and_then(|i| weights.get(i).copied());
@@ -92,13 +101,15 @@ impl<'a> Averages<'a> {
             first
         };
         let first_shares = (0..=record.times.len()).map(first_share).collect();
-        let node = |t: &f64| {
-            node += usize::from(average.times.get(node + 1).is_some_and(|end| end < t));
-            node
+        let before = |k: usize| {
+            node += usize::from(average.times.get(node + 1).is_some_and(|end| *end < record.times[k]));
+            let start = k.saturating_sub(1);
+            let h = record.intervals.get(start).map_or(0.0, |interval| interval.h);
+            Before { h, since: record.times[start] - average.times[node], node }
         };
-        let nodes = record.times.iter().map(node).collect();
+        let before = (0..record.times.len()).map(before).collect();
         let felt = felt(record, log.palms().len());
-        Self { record, average, felt, shares, first_shares, nodes, impulses }
+        Self { record, average, felt, shares, first_shares, before, impulses }
     }
 
     /// What contacts are measured from, world.
@@ -144,8 +155,10 @@ impl<'a> Averages<'a> {
             acting.wrench = Wrench { force: by.f, moment };
         }
         for share in &self.shares[self.first_shares[felt.k]..self.first_shares[felt.k + 1]] {
-            let wrench = &mut changed.wrenches[share.window];
-            *wrench = *wrench + acting.wrench * share.wrench;
+            if share.wrench > 0.0 {
+                let wrench = &mut changed.wrenches[share.window];
+                *wrench = *wrench + acting.wrench * share.wrench;
+            }
             if let Some(to) = changed.contacts[share.window].get_mut(felt.place) {
                 to.add(by, share.contact);
             }
@@ -158,7 +171,7 @@ impl<'a> Averages<'a> {
         if k == 0 || k >= self.record.times.len() || ends.iter().all(Option::is_none) {
             return;
         }
-        let h = self.record.intervals[k - 1].h;
+        let Before { h, since, node } = self.before[k];
         let [before, after] = ends.map(|acting| acting.unwrap_or_default().wrench);
         let mut impulse = (before + after) * (0.5 * h);
         let read = self.impulses[palm].and_then(|palm| palm.impulse(self.record.samples[k]));
@@ -167,8 +180,6 @@ impl<'a> Averages<'a> {
         if let Some(J) = read.filter(|_| count > 0.0) {
             impulse.moment += (sum / count).cross(J.vector);
         }
-        let node = self.nodes[k];
-        let since = self.record.times[k - 1] - changed.times[node];
         let interval = &mut changed.intervals[node];
         interval.impulse = interval.impulse + impulse;
         interval.first += (before.force + 2.0 * after.force) * (h * h / 6.0) + impulse.force * since;
@@ -177,7 +188,7 @@ impl<'a> Averages<'a> {
 
 /// The contacts of a record, by palm.
 fn felt(record: &Record, palms: usize) -> Vec<Vec<Felt>> {
-    let mut all: Vec<Vec<Felt>> = (0..palms).map(|_| Vec::new()).collect();
+    let mut all: Vec<Vec<Felt>> = (0..palms).map(|_| Vec::with_capacity(record.contacts.len())).collect();
     for (k, contacts) in record.contacts.iter().enumerate() {
         for (place, contact) in contacts.iter().enumerate() {
             let Contact { palm, c, n, u, f, frictionless, .. } = *contact;

@@ -4,7 +4,7 @@
 //! it then, or contradicts it.
 
 use super::both::of_each;
-use super::outliers::{is_steady, way};
+use super::outliers::{steady, way};
 use super::record::Contact;
 use super::way::{Off, Told, Way};
 use glam::DVec3;
@@ -42,8 +42,9 @@ pub(super) fn misread_forces(
         return Vec::new();
     }
     let palms: Vec<usize> = (0..sampled.len()).filter(|&palm| sampled[palm]).collect();
+    let steady = steady(contacts);
     let off = |palm: usize| -> Vec<(usize, Off)> {
-        let (way, noise) = forces(contacts, times, palm);
+        let (way, noise) = forces(contacts, times, palm, &steady);
         way.off(noise).into_iter().map(|off| (palm, off)).collect()
     };
     let off: Vec<_> = of_each(times.len(), &palms, off).into_iter().flatten().collect();
@@ -51,7 +52,8 @@ pub(super) fn misread_forces(
         return Vec::new();
     }
     let still = vec![0.0; times.len()];
-    let ways: Vec<Way> = (0..sampled.len()).map(|palm| way(contacts, times, palm, &still)).collect();
+    let ways: Vec<Way> =
+        (0..sampled.len()).map(|palm| way(contacts, times, palm, (&still, &steady))).collect();
     let one = |(palm, Off { sample: k, told: Told { value, .. }, around }): (usize, Off)| {
         let (before, after) = (k.saturating_sub(1), (k + 1).min(times.len() - 1));
         let h = 0.5 * (times[after] - times[before]);
@@ -67,13 +69,12 @@ pub(super) fn misread_forces(
 }
 
 /// Forces of a palm, and the deviation of one, N.
-fn forces(contacts: &[Vec<Contact>], times: &[f64], palm: usize) -> (Way, f64) {
+fn forces(contacts: &[Vec<Contact>], times: &[f64], palm: usize, steady: &[bool]) -> (Way, f64) {
     let mut way = Way::default();
     let mut noise = 0.0;
     for k in 0..contacts.len() {
         if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
-            let judged = [is_steady(contacts, k), contact.repeated];
-            way.add((k, times[k]), contact.f, 0.0, judged);
+            way.add((k, times[k]), contact.f, 0.0, [steady[k], contact.repeated]);
             noise += contact.f_deviation;
         }
     }

@@ -51,15 +51,17 @@ impl Mean {
 pub(super) fn by_ratio(record: &Record, time: f64) -> Vec<[ContactMode; MOST_PALMS]> {
     let times = &record.times;
     let mut modes = vec![[ContactMode::Off; MOST_PALMS]; times.len()];
-    for i in 0..MOST_PALMS {
-        let mut own = record.contacts.iter().flatten().filter(|contact| contact.palm == i);
-        if own.all(|contact| contact.frictionless) {
-            // Whatever friction is read there is none.
-            let touched = |contacts: &Vec<Contact>| contacts.iter().any(|contact| contact.palm == i);
-            let slides = modes.iter_mut().zip(&record.contacts).filter(|(_, contacts)| touched(contacts));
-            slides.for_each(|(modes, _)| modes[i] = ContactMode::Slide);
-            continue;
+    let mut rubs = [false; MOST_PALMS];
+    for (modes, contacts) in modes.iter_mut().zip(&record.contacts) {
+        for contact in contacts {
+            // Whatever friction is read where there is none.
+            if contact.frictionless {
+                modes[contact.palm] = ContactMode::Slide;
+            }
+            rubs[contact.palm] |= !contact.frictionless;
         }
+    }
+    for i in (0..MOST_PALMS).filter(|i| rubs[*i]) {
         let own = ratios(record, i);
         let ratios = averaged(&own, times, time);
         let slides = sliding(&ratios, &own);

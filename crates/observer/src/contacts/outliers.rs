@@ -29,9 +29,9 @@ pub(super) fn misread(
     gravity: f64,
 ) -> Vec<Misread> {
     let palms = contacts.iter().flatten().map(|contact| contact.palm + 1).max().unwrap_or(0);
-    let bends = bends(contacts, times, gravity);
+    let (bends, steady) = (bends(contacts, times, gravity), steady(contacts));
     let of_palm = |palm: usize| {
-        let way = way(contacts, times, palm, &bends);
+        let way = way(contacts, times, palm, (&bends, &steady));
         let one = |Off { sample, told: Told { value, squares }, around }: Off| {
             // As good as what it is told by, and no better than what that leaves of those around it.
             let as_around =
@@ -74,24 +74,29 @@ pub(super) fn mend(contacts: &mut [Vec<Contact>], misread: &[Misread]) {
     }
 }
 
-/// Where a palm is touched.
-pub(super) fn way(contacts: &[Vec<Contact>], times: &[f64], palm: usize, bends: &[f64]) -> Way {
+/// Where a palm is touched, by what its way may bend at each sample and whether that is `steady`.
+pub(super) fn way(
+    contacts: &[Vec<Contact>],
+    times: &[f64],
+    palm: usize,
+    (bends, steady): (&[f64], &[bool]),
+) -> Way {
     let mut way = Way::default();
     for k in 0..contacts.len() {
         if let Some(contact) = contacts[k].iter().find(|contact| contact.palm == palm) {
             let flat = contact.shape == glam::DMat3::ZERO;
-            let judged = [is_steady(contacts, k) && flat, contact.repeated];
-            way.add((k, times[k]), contact.c, bends[k], judged);
+            way.add((k, times[k]), contact.c, bends[k], [steady[k] && flat, contact.repeated]);
         }
     }
     way
 }
 
-/// Whether the same palms are touched around a sample.
-pub(super) fn is_steady(contacts: &[Vec<Contact>], k: usize) -> bool {
-    let touched = |k: usize| contacts[k].iter().map(|contact| contact.palm);
-    let around = k.saturating_sub(STEADY)..(k + STEADY + 1).min(contacts.len());
-    around.into_iter().all(|other| touched(other).eq(touched(k)))
+/// Whether the same palms are touched around each sample.
+pub(super) fn steady(contacts: &[Vec<Contact>]) -> Vec<bool> {
+    let palms = |of: &Vec<Contact>| of.iter().fold(0_u32, |palms, contact| palms | 1 << contact.palm);
+    let touched: Vec<u32> = contacts.iter().map(palms).collect();
+    let around = |k: usize| &touched[k.saturating_sub(STEADY)..(k + STEADY + 1).min(touched.len())];
+    (0..touched.len()).map(|k| around(k).iter().all(|palms| *palms == touched[k])).collect()
 }
 
 #[cfg(test)]

@@ -219,13 +219,13 @@ impl Record {
         let times = log.times().to_vec();
         let points =
             || (0..times.len()).flat_map(|k| log.palms().iter().filter_map(move |palm| palm.touch(k)));
-        let count = points().count();
+        let (count, sum) =
+            points().fold((0_u32, DVec3::ZERO), |(count, sum), touch| (count + 1, sum + touch.p_WC));
         if count == 0 {
             return None;
         }
-        let origin = points().map(|touch| touch.p_WC).sum::<DVec3>() / count as f64;
-        let square = points().map(|touch| touch.p_WC.distance_squared(origin)).sum::<f64>();
-        let across = points().map(|touch| (touch.p_WC.y - origin.y).powi(2)).sum::<f64>();
+        let origin = sum / f64::from(count);
+        let squares = points().map(|touch| touch.p_WC - origin).map(|off| off * off).sum::<DVec3>();
         let missed = MissedTwist::of(log);
         let samples: Vec<usize> = (0..times.len()).collect();
         let mut contacts =
@@ -238,7 +238,13 @@ impl Record {
         mend_forces(&mut contacts, &misread_forces);
         let felt = |k: usize| contacts[k].iter().filter(|contact| sampled[contact.palm]);
         let mut intervals = intervals(&times, felt, noise);
-        impulses::add(log, &contacts, noise, (square / count as f64).sqrt(), &mut intervals);
+        impulses::add(
+            log,
+            &contacts,
+            noise,
+            (squares.element_sum() / f64::from(count)).sqrt(),
+            &mut intervals,
+        );
         let wrenches = contacts.iter().map(wrench).collect();
         if options.planar {
             feet::share(log, &intervals, &sampled, &mut contacts);
@@ -256,7 +262,7 @@ impl Record {
             by_samples,
             misread,
             misread_forces,
-            across: across.sqrt() / count as f64,
+            across: squares.y.sqrt() / f64::from(count),
             deviation: noise.contact,
         })
     }
@@ -370,7 +376,10 @@ fn contacts_at(
         });
         Some(Contact { u_deviation, c: if options.planar { c.with_y(0.0) } else { c }, repeated, ..felt })
     };
-    log.palms().iter().enumerate().filter_map(one).collect()
+    // No larger than what is in it: there are as many of them as samples.
+    let mut all = Vec::with_capacity(log.palms().len());
+    all.extend(log.palms().iter().enumerate().filter_map(one));
+    all
 }
 
 /// Force of a palm at a sample and the standard deviation of each axis: measured in three axes, else by its impulses.

@@ -9,7 +9,6 @@ use super::slopes::slopes;
 use super::state::Motion;
 use crate::faults::Constant;
 use crate::random::Normal;
-use crate::rigid::exponential;
 use glam::DVec3;
 use object_dynamics::{ContactLog, LoggedPalm};
 
@@ -24,6 +23,8 @@ pub(super) struct Change<'a> {
     /// Near which the change is small: forces that are late are taken from the samples nearest to when they were by it.
     pub(super) value: f64,
     pub(super) by: f64,
+    /// Sine and versed sine of that, of a palm that is tilted.
+    pub(super) turn: [f64; 2],
     pub(super) log: &'a ContactLog,
     /// Motion at all samples, positions from the record's origin.
     pub(super) motions: &'a [(Motion, Deviations)],
@@ -66,8 +67,11 @@ impl Change<'_> {
             }
             Constant::PalmTilt { palm: of, axis } if of == number => {
                 let pose = palm.motion(k).pose;
-                let turn = exponential(pose.R_WP * (DVec3::AXES[axis] * by));
-                let turned = |v: DVec3| turn * v - v;
+                let (about, [sine, versine]) = (pose.R_WP * DVec3::AXES[axis], self.turn);
+                let turned = |v: DVec3| {
+                    let across = about.cross(v);
+                    across * sine + about.cross(across) * versine
+                };
                 let c = turned(contact.c - (pose.p_WP - self.origin));
                 ChangeBy { c, n: turned(contact.n), f: turned(contact.f) }
             }

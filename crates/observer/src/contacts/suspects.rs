@@ -25,7 +25,7 @@ use super::windows::Window;
 use crate::doubted;
 use crate::faults::{Constant, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
-use contact_kinematics::{PalmSurface, by_halves};
+use contact_kinematics::{PalmSurface, in_parts};
 use glam::DVec3;
 use object_dynamics::ContactLog;
 use std::borrow::Cow;
@@ -102,7 +102,9 @@ impl<'a> Sensors<'a> {
         let Self { readings: Readings { log, averages, .. }, motions, ref body } = *self;
         let slopes = [self.slopes_of(fault), slopes];
         let origin = averages.origin();
-        let change = Change { fault, value, by: value + step, log, motions, body, slopes, origin };
+        let by = value + step;
+        let turn = [by.sin(), 2.0 * (0.5 * by).sin().powi(2)];
+        let change = Change { fault, value, by, turn, log, motions, body, slopes, origin };
         averages.changed(change.palm(), |contact| change.of(contact))
     }
 
@@ -231,7 +233,7 @@ fn followed(
     // Each is a pass over all samples: two at a time.
     let mut constants = scores.sensors.constants(problem);
     constants.extend(body.iter().flat_map(|_| CONSTANTS_OF_BODY));
-    by_halves(&constants, |faults| faults.iter().copied().filter_map(one).collect())
+    in_parts(&constants, |faults| faults.iter().copied().filter_map(one).collect())
 }
 
 /// Share of noise in the squares of the impulses.

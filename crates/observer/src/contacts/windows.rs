@@ -53,19 +53,19 @@ pub(super) fn longest(record: &Record, noise: &ContactNoiseLevel, units: &Units)
 
 /// Whether contacts depart from the parabolas through windows by more than noise does, at odds of a thousand to one.
 fn bent(record: &Record, longest: f64, deviation: f64) -> bool {
-    let (mut squares, mut freedoms) = (0.0, 0.0);
-    for window in alike(record, longest) {
-        for i in 0..record.contacts[window.middle()].len() {
-            let of = window.left(record, i).unwrap_or_default();
-            (squares, freedoms) = (squares + of.0, freedoms + of.1);
-        }
-    }
+    let left = |window: &Window| {
+        let all = 0..record.contacts[window.middle()].len();
+        all.filter_map(|i| window.left(record, i)).fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
+    };
+    let left = of_some(record.times.len(), &alike(record, longest), |some| some.iter().map(left).collect());
+    let (squares, freedoms) = left.iter().fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
     // Each sample is around three windows.
     squares > deviation * deviation * (freedoms + UNLIKELY * (6.0 * freedoms).sqrt())
 }
 
 /// A window of samples in the middle one of which there is to be a node, and the samples around it with the same contacts in
 /// the same modes.
+#[derive(Clone)]
 pub(super) struct Window {
     pub(super) own: Range<usize>,
     pub(super) around: Range<usize>,
@@ -111,7 +111,8 @@ impl Window {
 
 /// Windows of an odd number of samples.
 pub(super) fn windows(record: &Record, longest: f64) -> Vec<Window> {
-    alike(record, longest).into_iter().flat_map(|window| window.apart(record)).collect()
+    let apart = |some: &[Window]| some.iter().cloned().flat_map(|window| window.apart(record)).collect();
+    of_some(record.times.len(), &alike(record, longest), apart)
 }
 
 /// The same of samples that touch alike, however contacts bend.
@@ -228,13 +229,16 @@ impl Record {
 
     /// At some of its samples, with these contacts and wrenches there. What forces did in between is kept.
     fn picked(&self, picked: &[usize], contacts: Vec<Vec<Contact>>, wrenches: Vec<Wrench>) -> Self {
+        let between: Vec<Range<usize>> = picked.windows(2).map(|k| k[0]..k[1]).collect();
         Self {
             times: picked.iter().map(|&k| self.times[k]).collect(),
             samples: picked.iter().map(|&k| self.samples[k]).collect(),
             origin: self.origin,
             contacts,
             wrenches,
-            intervals: picked.windows(2).map(|k| sum(&self.intervals[k[0]..k[1]])).collect(),
+            intervals: of_some(self.times.len(), &between, |some| {
+                some.iter().map(|between| sum(&self.intervals[between.clone()])).collect()
+            }),
             all_impulses: self.all_impulses,
             by_samples: self.by_samples,
             misread: Vec::new(),
@@ -328,20 +332,15 @@ impl Record {
 
 /// Neighbouring intervals as one.
 fn sum(intervals: &[Interval]) -> Interval {
-    let none = Interval {
-        h: 0.0,
-        impulse: Wrench::default(),
-        first: DVec3::ZERO,
-        noise: WrenchNoise::default(),
-        blow: false,
-        parts: 1,
-    };
-    intervals.iter().fold(none, |sum, interval| Interval {
-        h: sum.h + interval.h,
-        impulse: sum.impulse + interval.impulse,
-        first: sum.first + interval.first + interval.impulse.force * sum.h,
-        noise: sum.noise + interval.noise,
-        blow: sum.blow || interval.blow,
-        parts: sum.parts + interval.parts - 1,
-    })
+    let (impulse, first, noise) = (Wrench::default(), DVec3::ZERO, WrenchNoise::default());
+    let mut sum = Interval { h: 0.0, impulse, first, noise, blow: false, parts: 1 };
+    for interval in intervals {
+        sum.first += interval.first + interval.impulse.force * sum.h;
+        sum.h += interval.h;
+        sum.impulse = sum.impulse + interval.impulse;
+        sum.noise += interval.noise;
+        sum.blow |= interval.blow;
+        sum.parts += interval.parts - 1;
+    }
+    sum
 }

@@ -142,11 +142,11 @@ fn gather(
     let [x, y, z, i, j, k, w] = transform.pose;
     let pose = SurfacePose::new(DVec3::new(x, y, z), DQuat::from_xyzw(i, j, k, w))
         .map_err(|source| Kind::Transform { frame: child.to_owned(), t, source })?;
-    let known = all.entry(child.to_owned()).or_insert_with(|| Gathered {
-        parent: parent.to_owned(),
-        topic: topic.to_owned(),
-        poses: Vec::new(),
-    });
+    let Some(known) = all.get_mut(child) else {
+        let (parent, topic) = (parent.to_owned(), topic.to_owned());
+        all.insert(child.to_owned(), Gathered { parent, topic, poses: vec![(t, pose)] });
+        return Ok(());
+    };
     if known.parent != parent {
         let (frame, first) = (child.to_owned(), known.parent.clone());
         return Err(Kind::TwoParents { frame, first, second: parent.to_owned() });

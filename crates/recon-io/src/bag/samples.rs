@@ -4,7 +4,7 @@ use super::error::BagErrorKind as Kind;
 use super::palm::{PalmStreams, Standing, Steady, Touched};
 use crate::{PalmSetup, brief_to};
 use glam::DVec3;
-use recon::contact_kinematics::{PoseTable, SurfacePose, by_halves};
+use recon::contact_kinematics::{PoseTable, SurfacePose, in_parts};
 use recon::object_dynamics::{
     ContactPoints, ForceChannel, PalmRecord, PoseTrack, RecordedMotion, Rhythm, TrueState, TurnAndShift,
 };
@@ -19,7 +19,6 @@ pub(super) struct Samples {
     lacks: Vec<(String, usize)>,
 }
 
-#[derive(Default)]
 struct PalmSamples {
     poses: Vec<SurfacePose>,
     points: Vec<Option<DVec3>>,
@@ -47,35 +46,54 @@ impl Samples {
         label: &str,
         times: &[f64],
     ) -> Result<Self, Kind> {
-        let palms = streams.iter().map(|_| PalmSamples::default()).collect();
-        let mut made = Self { times: Vec::new(), palms, truth: Vec::new(), left_out: 0, lacks: Vec::new() };
-        let true_longest = truth.map_or(0.0, |truth| Rhythm::of(truth.times()).longest());
-        let at = |t: f64| -> Result<(Vec<Instant>, Option<SurfacePose>), String> {
-            let instants = streams.iter().map(|palm| instant(palm, t)).collect::<Result<_, _>>()?;
-            Ok((instants, truth.and_then(|truth| truth.at(t, true_longest))))
-        };
-        let all = by_halves(times, |times| times.iter().map(|&t| at(t)).collect());
-        for (&t, instants) in times.iter().zip(all) {
-            match instants {
-                Ok((instants, truth)) => {
-                    made.times.push(t);
-                    made.truth.push(truth);
-                    made.palms.iter_mut().zip(instants).for_each(|(palm, instant)| palm.push(instant));
-                }
-                Err(what) => {
-                    made.left_out += 1;
-                    match made.lacks.iter_mut().find(|(known, _)| *known == what) {
-                        Some((_, count)) => *count += 1,
-                        None => made.lacks.push((what, 1)),
-                    }
-                }
-            }
-        }
+        let truth = truth.map(|truth| (truth, Rhythm::of(truth.times()).longest()));
+        let parts = in_parts(times, |times| vec![Self::part(streams, truth, times)]);
+        let made = parts.into_iter().fold(Self::none(streams, times.len()), Self::followed_by);
         if made.times.len() < 2 {
             let (topic, asked, lacking) = (label.to_owned(), times.len(), made.lacking());
             return Err(Kind::NoSamples { topic, asked, lacking });
         }
         Ok(made)
+    }
+
+    fn none(streams: &[PalmStreams], room: usize) -> Self {
+        let palms = streams.iter().map(|_| PalmSamples::none(room)).collect();
+        let (times, truth) = (Vec::with_capacity(room), Vec::with_capacity(room));
+        Self { times, palms, truth, left_out: 0, lacks: Vec::new() }
+    }
+
+    /// Those at some of the times; of the truth how long it may be silent as well, s.
+    fn part(streams: &[PalmStreams], truth: Option<(&PoseTrack, f64)>, times: &[f64]) -> Self {
+        let mut made = Self::none(streams, times.len());
+        let mut instants = Vec::with_capacity(streams.len());
+        for &t in times {
+            instants.clear();
+            match streams.iter().try_for_each(|palm| instant(palm, t).map(|of| instants.push(of))) {
+                Ok(()) => {
+                    made.times.push(t);
+                    made.truth.push(truth.and_then(|(truth, longest)| truth.at(t, longest)));
+                    made.palms.iter_mut().zip(&instants).for_each(|(palm, instant)| palm.push(instant));
+                }
+                Err(what) => made.lack(what, 1),
+            }
+        }
+        made
+    }
+
+    fn lack(&mut self, what: String, times: usize) {
+        self.left_out += times;
+        match self.lacks.iter_mut().find(|(known, _)| *known == what) {
+            Some((_, count)) => *count += times,
+            None => self.lacks.push((what, times)),
+        }
+    }
+
+    fn followed_by(mut self, other: Self) -> Self {
+        self.times.extend(other.times);
+        self.truth.extend(other.truth);
+        self.palms.iter_mut().zip(other.palms).for_each(|(palm, other)| palm.extend(other));
+        other.lacks.into_iter().for_each(|(what, times)| self.lack(what, times));
+        self
     }
 
     pub(super) fn lacking(&self) -> String {
@@ -153,7 +171,27 @@ impl Samples {
 }
 
 impl PalmSamples {
-    fn push(&mut self, instant: Instant) {
+    fn none(room: usize) -> Self {
+        Self {
+            poses: Vec::with_capacity(room),
+            points: Vec::with_capacity(room),
+            forces: Vec::with_capacity(room),
+            normal_forces: Vec::with_capacity(room),
+            torques: Vec::with_capacity(room),
+            between: [0; 3],
+        }
+    }
+
+    fn extend(&mut self, other: Self) {
+        self.poses.extend(other.poses);
+        self.points.extend(other.points);
+        self.forces.extend(other.forces);
+        self.normal_forces.extend(other.normal_forces);
+        self.torques.extend(other.torques);
+        self.between.iter_mut().zip(other.between).for_each(|(count, more)| *count += more);
+    }
+
+    fn push(&mut self, instant: &Instant) {
         self.poses.push(instant.pose);
         self.points.push(instant.point);
         self.forces.push(instant.force.unwrap_or_default());

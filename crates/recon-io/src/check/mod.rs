@@ -142,11 +142,13 @@ impl Found {
                 }
                 Err(fault) => self.faults.push(fault),
             },
-            (MOTION, _) => match table::numbers(file, open()?, |row| self.relied_on.count(row))? {
-                None => self.held.push(format!("{file}: all numbers are finite")),
-                Some(fault) => self.faults.push(fault),
-            },
-            (_, "csv") => match table::numbers(file, open()?, |_| ())? {
+            (MOTION, _) => {
+                match table::numbers(file, open()?, table::Columns::Last, |row| self.relied_on.count(row))? {
+                    None => self.held.push(format!("{file}: all numbers are finite")),
+                    Some(fault) => self.faults.push(fault),
+                }
+            }
+            (_, "csv") => match table::numbers(file, open()?, table::Columns::Last, |_| ())? {
                 None => self.held.push(format!("{file}: all numbers are finite")),
                 Some(fault) => self.faults.push(fault),
             },

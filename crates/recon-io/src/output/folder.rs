@@ -4,9 +4,10 @@ use super::manifest::{Contents, Entry, MANIFEST, Manifest, STAGE};
 use super::place::{input_in, resolved};
 use super::{OutputError, left, sibling};
 use crate::check::{CheckError, certify};
+use recon::contact_kinematics::at_once;
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -95,11 +96,12 @@ pub struct OutputFolder {
     target: FolderTarget,
     temporary: PathBuf,
     held: Held,
-    files: Mutex<Vec<Entry>>,
+    /// Written, but not yet seen to be on the disk.
+    files: Mutex<Vec<(Entry, File)>>,
 }
 
 impl OutputFolder {
-    /// Writes one file of the folder to the disk; several threads may do so at once.
+    /// Writes one file of the folder; several threads may do so at once. That all are on the disk is seen to when they are put in place.
     ///
     /// # Errors
     /// [`OutputError::Io`] names the file as it would have been called; [`OutputError::Collision`] when a file of that
@@ -117,19 +119,28 @@ impl OutputFolder {
             contents(&mut writer)?;
             writer.flush()?;
             let (writer, sum) = writer.finish();
-            writer.get_ref().sync_all()?;
-            Ok(sum)
+            Ok((writer.into_inner().map_err(IntoInnerError::into_error)?, sum))
         };
-        let sum = write().map_err(OutputError::io("write", &self.target.named.join(name)))?;
-        if name != MANIFEST {
-            self.entries().push(Entry::new(name, &sum));
-        }
+        let (file, sum) = write().map_err(OutputError::io("write", &self.target.named.join(name)))?;
+        self.files().push((Entry::new(name, &sum), file));
         Ok(())
     }
 
-    /// Of the files so far: a list is whole at any time, also where a thread that wrote ended in a panic.
-    fn entries(&self) -> MutexGuard<'_, Vec<Entry>> {
+    /// Those so far: a list is whole at any time, also where a thread that wrote ended in a panic.
+    fn files(&self) -> MutexGuard<'_, Vec<(Entry, File)>> {
         self.files.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Sees that all files so far are on the disk; gives their entries by name.
+    fn synced(&self) -> Result<Vec<Entry>, OutputError> {
+        let mut entries = Vec::new();
+        for (entry, file) in self.files().drain(..) {
+            file.sync_all().map_err(OutputError::io("write", &self.target.named.join(&entry.name)))?;
+            entries.push(entry);
+        }
+        // Whichever was complete first.
+        entries.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(entries)
     }
 
     /// Checks what the files hold ([`crate::check`]) and puts them in place, those of an earlier run away; everything else
@@ -138,25 +149,31 @@ impl OutputFolder {
     /// # Errors
     /// [`OutputError`], in particular [`OutputError::Certificate`]; what stood there before stands there again.
     pub fn commit(self) -> Result<(), OutputError> {
-        let names: Vec<String> = self.entries().iter().map(|file| file.name.clone()).collect();
+        let names: Vec<String> = self.files().iter().map(|(file, _)| file.name.clone()).collect();
         let fails = |faults| OutputError::Certificate {
             path: self.target.named.clone(),
             source: CheckError::Faults { faults },
         };
-        certify(&self.temporary, &names).map_err(fails)?;
-        self.place()
+        // The disk is waited for meanwhile.
+        let (files, checked) = at_once(|| self.synced(), || certify(&self.temporary, &names));
+        let files = files?;
+        checked.map_err(fails)?;
+        self.placed(files)
     }
 
     /// [`commit`](Self::commit) of files that hold anything.
-    pub(crate) fn place(mut self) -> Result<(), OutputError> {
-        let mut files = std::mem::take(&mut *self.entries());
-        // Whichever was complete first.
-        files.sort_by(|a, b| a.name.cmp(&b.name));
+    pub(crate) fn place(self) -> Result<(), OutputError> {
+        let files = self.synced()?;
+        self.placed(files)
+    }
+
+    fn placed(mut self, files: Vec<Entry>) -> Result<(), OutputError> {
         let manifest = Manifest { recon: env!("CARGO_PKG_VERSION").to_owned(), files };
         self.write(MANIFEST, |to| {
             serde_json::to_writer_pretty(&mut *to, &manifest)?;
             writeln!(to)
         })?;
+        self.synced()?;
         let FolderTarget { named, place, .. } = &self.target;
         if !self.temporary.starts_with(place) {
             self.held.release().map_err(OutputError::io("put in place", named))?;

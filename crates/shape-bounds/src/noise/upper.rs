@@ -3,7 +3,7 @@
 use super::model::NoiseError;
 use super::quantile;
 use super::windows::Window;
-use contact_kinematics::by_halves;
+use contact_kinematics::in_parts;
 use exact_hull::HalfSpace;
 use exact_hull::{Intersection, Polyhedron};
 use glam::DVec3;
@@ -52,7 +52,7 @@ pub(super) fn certain_half_spaces(
     let size = windows.iter().map(|(w, _)| w.point.distance(centre)).fold(0.0, f64::max);
     let (mut half_spaces, mut region) = prove_region(&windows, centre, size)?;
     for _ in 0..ROUNDS {
-        half_spaces = by_halves(&windows, |windows| {
+        half_spaces = in_parts(&windows, |windows| {
             let mut caps = region.caps();
             let one = |(w, quantiles): &(Window, Quantiles)| {
                 let plane = HalfSpace { point: w.point, normal: w.normal, margin: w.offset / w.shrink };

@@ -73,9 +73,15 @@ impl ContactLog {
                     NotThreePlanes::Frame { palm: i + 1, sample: k, time: self.times[k], source }
                 })
             };
-            Ok(Sample { t: self.times[k], palms: [reading(0)?, reading(1)?, reading(2)?] })
+            Ok::<_, NotThreePlanes>(Sample {
+                t: self.times[k],
+                palms: [reading(0)?, reading(1)?, reading(2)?],
+            })
         };
-        let samples = (0..self.times.len()).map(sample).collect::<Result<Vec<_>, NotThreePlanes>>()?;
+        let mut samples = Vec::with_capacity(self.times.len());
+        for k in 0..self.times.len() {
+            samples.push(sample(k)?);
+        }
         let moved = |state: &TrueState| TrueState { p_WCm: state.p_WCm - p_WM, ..*state };
         let truth = self.truth.as_ref().map(|truth| truth.iter().map(moved).collect());
         Ok(ThreePlanes { log: SensorLog::new(samples, truth)?, p_WM, apart })

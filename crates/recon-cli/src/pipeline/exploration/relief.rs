@@ -10,7 +10,7 @@ use super::story::Explored;
 use crate::cli::GoalArgs;
 use crate::error::{CliError, Outcome as Exit};
 use crate::pipeline::bounds::{LOWER, UPPER, own};
-use recon::contact_kinematics::{Direction, by_halves};
+use recon::contact_kinematics::{Direction, in_parts};
 use recon::exploration::Heading;
 use recon::exploration::contour::Margins;
 use recon::exploration::relief::{
@@ -142,7 +142,7 @@ impl Known {
         known.lower = bounds.hull();
         let along = <Direction as Heading>::spread(HALF_SPACES);
         let of = |some: &[Direction]| some.iter().map(|n| (*n, bounds.support(*n))).collect();
-        let sides: Vec<_> = by_halves(&along, of);
+        let sides: Vec<_> = in_parts(&along, of);
         let all: Vec<HalfSpace> = sides.iter().map(half_space).collect();
         known.upper = Intersection::of(&all)?.bounded().cloned();
         known.gap = sides.iter().map(|(_, (low, high))| high - low).fold(0.0, f64::max);
