@@ -15,7 +15,7 @@ pub enum Reason {
     Open,
     /// The largest score of all candidates.
     Best,
-    /// The nearest one of those with a score that is large enough.
+    /// The one that pays most for its way of those with a score that is large enough.
     Near,
     /// The direction whose width is asked for, or its opposite.
     Width,

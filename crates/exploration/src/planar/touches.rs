@@ -17,9 +17,6 @@ impl Touching for PlanarKnowledge {
 
     const GREEDY: &'static str = "area";
 
-    /// 0.77 of the way for 1.02 of the touches.
-    const SHARE: f64 = 0.5;
-
     const RAYS: usize = 120;
 
     fn stand(&self) -> Stand<'_, Self> {

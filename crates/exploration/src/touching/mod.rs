@@ -33,9 +33,6 @@ pub(crate) trait Touching: Knowledge {
     /// Name of the greedy planner.
     const GREEDY: &'static str;
 
-    /// Share of the best score that is enough for the one that looks at its way.
-    const SHARE: f64;
-
     /// Rays along which a Gaussian process looks at the surface.
     const RAYS: usize;
 

@@ -20,7 +20,7 @@ pub(super) const MOST: f64 = 0.05;
 const OF_CUBIC: f64 = 1.394;
 /// Fewest values of a palm whose scatter can be told.
 pub(super) const FEWEST: usize = 20;
-/// Values of a palm that tell the scatter of all of them, at most twice as many.
+/// Values of a palm that tell the scatter of all of them, at most.
 const TELL: usize = 5000;
 /// Median of the length of a vector of two standard normal numbers.
 pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// What decides where to touch.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub(crate) enum PlannerAs {
-    /// The nearest of the touches that pay nearly as much as the best: start here
+    /// Of the touches that pay nearly as much as the best that which pays most for its way: start here
     PathAware,
     /// The touch that is expected to shrink the volume (area) between the bounds most
     Volume,

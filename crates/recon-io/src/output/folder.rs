@@ -162,6 +162,7 @@ impl OutputFolder {
     }
 
     /// [`commit`](Self::commit) of files that hold anything.
+    #[cfg(test)]
     pub(crate) fn place(self) -> Result<(), OutputError> {
         let files = self.synced()?;
         self.placed(files)
