@@ -2,7 +2,7 @@
 
 use super::knowledge::Prospects;
 use crate::limits::Limits;
-use crate::touching::Candidate;
+use crate::touching::{Candidate, LEVEL};
 use glam::DVec2;
 use shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
 use shape_bounds::planar::ShapeBounds;
@@ -84,16 +84,21 @@ pub(super) fn by_distance(
 /// The corner farthest along `u`, from `start` around the outline.
 fn climb(shape: &ConvexPolygon, u: DVec2, start: usize) -> usize {
     let (corners, count) = (shape.vertices(), shape.vertices().len());
+    let height = |k: usize| corners[k].dot(u);
+    let higher = |a: &usize, b: &usize| height(*a).total_cmp(&height(*b));
     let mut here = start;
-    for _ in 0..count {
+    loop {
         let sides = [(here + 1) % count, (here + count - 1) % count];
-        let higher = sides.into_iter().find(|k| corners[*k].dot(u) > corners[here].dot(u));
-        match higher {
-            Some(next) => here = next,
-            None => break,
+        let Some(next) = sides.into_iter().max_by(higher) else { return here };
+        if height(next) > height(here) {
+            here = next;
+        } else if height(here) - height(next) > LEVEL * corners[here].abs().max_element() {
+            return here;
+        } else {
+            // Where more than two lines meet several corners are at one place, and a climb ends there: all are looked at.
+            return (0..count).max_by(higher).unwrap_or(here);
         }
     }
-    here
 }
 
 /// Expected loss of area by a touch along the normal of the edge `[a, b]` of the lower bound.

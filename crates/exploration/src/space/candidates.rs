@@ -3,7 +3,7 @@
 use super::cap::{Caps, Growth};
 use super::knowledge::Prospects;
 use crate::limits::Limits;
-use crate::touching::{Candidate, Score};
+use crate::touching::{Candidate, LEVEL, Score};
 use contact_kinematics::Direction;
 use glam::DVec3;
 use shape_bounds::exact_hull::{Polyhedron, SolidHull, SupportWalk};
@@ -153,7 +153,8 @@ impl<'a> Scorer<'a> {
         let low = self.lower.vertices()[near].dot(u);
         let summit = self.caps.summit(u, corner);
         let high = self.upper.vertices()[summit as usize].dot(u);
-        if high <= low {
+        // Where the bounds meet but for rounding, where the body ends there is known: a touch would be one that was made.
+        if high - low <= LEVEL * self.upper.vertices()[summit as usize].abs().max_element() {
             return 0.0;
         }
         let (from, to) = (inner.dot(u), outer.dot(u));

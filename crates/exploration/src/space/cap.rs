@@ -1,10 +1,8 @@
 //! What a half-space would cut off the upper bound, and a point would add to the lower one, without making either anew.
 
+use crate::touching::LEVEL;
 use glam::DVec3;
 use shape_bounds::exact_hull::{Polyhedron, SolidHull};
-
-/// Corners closer in height than this, relative to their coordinates, may be at one place.
-const LEVEL: f64 = 1e-13;
 
 /// Marks of what was met, of which a new search forgets all at once.
 struct Marks {

@@ -118,6 +118,8 @@ const NAMED: usize = 8;
 const OVERESTIMATE: f64 = 0.8;
 /// Scores below this share of the largest that there can be are rounding.
 const NOTHING: f64 = 1e-12;
+/// Corners of a bound that are closer in height than this, relative to their coordinates, may be at one place.
+pub(crate) const LEVEL: f64 = 1e-13;
 /// Scores closer than this, relative, are a tie, which goes to the first: never to rounding.
 const TIE: f64 = 1e-9;
 
