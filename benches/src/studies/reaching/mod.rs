@@ -15,7 +15,7 @@ use tables::{Compared, by_family, distance_table, ratios, touches_table};
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 /// Seeds of the bodies: nothing was chosen on them. Those of tuning are 1000 to 1009, 2000 to 2029 and 5000 to 5029.
-const FIRST_SEED: u64 = 78_000;
+const FIRST_SEED: u64 = 79_000;
 
 pub(crate) fn main() -> Result<(), Failure> {
     let each: u64 = crate::words().next().map_or(Ok(10), |a| a.parse())?;

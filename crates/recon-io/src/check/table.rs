@@ -40,8 +40,8 @@ fn must(column: &str) -> Option<Must> {
     (column == "relied_on").then_some(("0 or 1", |number| [0.0, 1.0].contains(&number)))
 }
 
-/// Reads a table of numbers and gives each row to `each`. Where its `columns` are not all asked for, those without a rule but the last one may be given as
-/// `nan`: they are seen to be numbers, and not made ones.
+/// Reads a table of numbers and gives each row to `each`. Where not all are `asked` for, those of columns without a rule may be given as `nan`, but for the last
+/// column: they are seen to be finite numbers, and not made ones.
 pub(super) fn numbers(
     file: &str,
     mut from: impl BufRead,
