@@ -21,9 +21,9 @@ pub(super) struct Idle {
 const FAR: usize = 2;
 const SHAKEN: usize = 4;
 /// Motions without a contact after which what is left counts as out of reach, whatever bodies drawn say.
-const GIVEN_UP: usize = 16;
+const GIVEN_UP: usize = 40;
 /// Times that a body is shaken before it is believed that nothing reaches what is left.
-const TRIES: usize = 5;
+const TRIES: usize = 15;
 
 impl Idle {
     /// The motion to be made in place of a planner's own, if those before brought nothing.
