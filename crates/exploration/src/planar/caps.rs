@@ -2,7 +2,7 @@
 
 use super::knowledge::Prospects;
 use crate::limits::Limits;
-use crate::touching::{Candidate, LEVEL};
+use crate::touching::{Candidate, climbed};
 use glam::DVec2;
 use shape_bounds::exact_hull::planar::{ConvexPolygon, Direction};
 use shape_bounds::planar::ShapeBounds;
@@ -84,21 +84,13 @@ pub(super) fn by_distance(
 /// The corner farthest along `u`, from `start` around the outline.
 fn climb(shape: &ConvexPolygon, u: DVec2, start: usize) -> usize {
     let (corners, count) = (shape.vertices(), shape.vertices().len());
-    let height = |k: usize| corners[k].dot(u);
-    let higher = |a: &usize, b: &usize| height(*a).total_cmp(&height(*b));
-    let mut here = start;
-    loop {
-        let sides = [(here + 1) % count, (here + count - 1) % count];
-        let Some(next) = sides.into_iter().max_by(higher) else { return here };
-        if height(next) > height(here) {
-            here = next;
-        } else if height(here) - height(next) > LEVEL * corners[here].abs().max_element() {
-            return here;
-        } else {
-            // Where more than two lines meet several corners are at one place, and a climb ends there: all are looked at.
-            return (0..count).max_by(higher).unwrap_or(here);
-        }
-    }
+    climbed(
+        count,
+        start,
+        |k| [(k + 1) % count, (k + count - 1) % count],
+        |k| corners[k].dot(u),
+        |k| corners[k].abs().max_element(),
+    )
 }
 
 /// Expected loss of area by a touch along the normal of the edge `[a, b]` of the lower bound.

@@ -1,6 +1,6 @@
 //! What a half-space would cut off the upper bound, and a point would add to the lower one, without making either anew.
 
-use crate::touching::LEVEL;
+use crate::touching::climbed;
 use glam::DVec3;
 use shape_bounds::exact_hull::{Polyhedron, SolidHull};
 
@@ -45,22 +45,14 @@ impl<'a> Caps<'a> {
 
     /// The corner farthest along `u`, by climbing from `start`.
     pub(super) fn summit(&self, u: DVec3, start: u32) -> u32 {
-        let vertices = self.upper.vertices();
-        let height = |v: u32| vertices[v as usize].dot(u);
-        let mut here = start;
-        loop {
-            let around = self.upper.vertex_neighbours()[here as usize].into_iter();
-            let Some(next) = around.max_by(|a, b| height(*a).total_cmp(&height(*b))) else { return here };
-            if height(next) > height(here) {
-                here = next;
-            } else if height(here) - height(next) > LEVEL * vertices[here as usize].abs().max_element() {
-                return here;
-            } else {
-                // Where more than three planes meet, several corners are at one place, and a climb ends there: all are looked at.
-                let all = 0..vertices.len() as u32;
-                return all.max_by(|a, b| height(*a).total_cmp(&height(*b))).unwrap_or(here);
-            }
-        }
+        let (vertices, around) = (self.upper.vertices(), self.upper.vertex_neighbours());
+        climbed(
+            vertices.len(),
+            start as usize,
+            |v| around[v].map(|next| next as usize),
+            |v| vertices[v].dot(u),
+            |v| vertices[v].abs().max_element(),
+        ) as u32
     }
 
     /// Volume of the upper bound where `u . y > t`, in m^3; `summit` is the corner farthest along `u`.

@@ -123,6 +123,29 @@ pub(crate) const LEVEL: f64 = 1e-13;
 /// Scores closer than this, relative, are a tie, which goes to the first: never to rounding.
 const TIE: f64 = 1e-9;
 
+/// The highest of `count` corners of a bound, by climbing from `start` to those `around`; with how large the coordinates of one are.
+pub(crate) fn climbed<const N: usize>(
+    count: usize,
+    start: usize,
+    around: impl Fn(usize) -> [usize; N],
+    height: impl Fn(usize) -> f64,
+    size: impl Fn(usize) -> f64,
+) -> usize {
+    let higher = |a: &usize, b: &usize| height(*a).total_cmp(&height(*b));
+    let mut here = start;
+    loop {
+        let Some(next) = around(here).into_iter().max_by(higher) else { return here };
+        if height(next) > height(here) {
+            here = next;
+        } else if height(here) - height(next) > LEVEL * size(here) {
+            return here;
+        } else {
+            // Where more lines or planes meet than make a corner several are at one place, and a climb ends there: all are looked at.
+            return (0..count).max_by(higher).unwrap_or(here);
+        }
+    }
+}
+
 impl<H: Heading, P: Copy> Candidates<H, P> {
     pub(crate) fn none() -> Self {
         Self { within: Vec::new(), out_of_reach: Vec::new() }

@@ -77,9 +77,8 @@ fn along_links<T: Send>(
     let nodes = problem.node_samples();
     let of = |some: &[usize]| {
         let sample = |j: usize| nodes.get(j).copied().unwrap_or(log.times.len());
-        let [from, to] =
-            [some.first(), some.last().map(|last| last + 1).as_ref()].map(|j| j.map_or(0, |j| sample(*j)));
-        let mut all = Vec::with_capacity(to.saturating_sub(from));
+        let room = some.first().zip(some.last()).map_or(0, |(first, last)| sample(last + 1) - sample(*first));
+        let mut all = Vec::with_capacity(room);
         for &j in some {
             all.push(at_node(j));
             if let Some(&end) = nodes.get(j + 1) {
