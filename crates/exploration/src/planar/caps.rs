@@ -43,19 +43,21 @@ pub(super) fn by_area(
     limits: &Limits<Direction>,
 ) -> Candidates {
     let mut found = Candidates::none();
-    let (Some(lower), Some(upper)) = (bounds.lower().polygon(), bounds.upper().bounded()) else {
-        // Without a lower bound of any area the farthest corner is the best there is.
+    // A lower bound that is a segment has two edges, one for each of its sides.
+    let corners = bounds.lower_corners();
+    let (2.., Some(upper)) = (corners.len(), bounds.upper().bounded()) else {
+        // Of one point the farthest corner is the best there is.
         return by_distance(bounds, prospects, limits);
     };
-    let (lower, upper) = (lower.shape(), upper.shape());
+    let upper = upper.shape();
     let mut summit = 0;
-    for (a, b) in lower.edges() {
+    for (a, b) in corners.iter().copied().zip(corners.iter().copied().cycle().skip(1)) {
         let Ok(along) = Direction::new(-(b - a).perp()) else { continue };
         summit = climb(upper, along.get(), summit);
         let top = upper.vertices()[summit];
         let score = expected_loss(upper, [a, b], along, summit, prospects);
         let candidate = Candidate { along, ray: [top, a.midpoint(b)], score };
-        found.take(candidate, prospects, limits, |near| loss_along(lower, upper, near, prospects));
+        found.take(candidate, prospects, limits, |near| loss_along(bounds, upper, near, prospects));
     }
     found
 }
@@ -119,14 +121,14 @@ fn expected_loss(
 
 /// The same along any direction: what the upper bound loses alone.
 fn loss_along(
-    lower: &ConvexPolygon,
+    bounds: &ShapeBounds,
     upper: &ConvexPolygon,
     along: Direction,
     prospects: &Prospects<'_>,
 ) -> f64 {
     let u = along.get();
     let summit = climb(upper, u, 0);
-    let (low, high) = (lower.support(along), upper.vertices()[summit].dot(u));
+    let (low, high) = (bounds.support(along).0, upper.vertices()[summit].dot(u));
     let one = |share: f64| area_beyond(upper, u, low + share * (high - low) + prospects.out, summit);
     if high > low { HEIGHTS.into_iter().map(one).sum::<f64>() / HEIGHTS.len() as f64 } else { 0.0 }
 }

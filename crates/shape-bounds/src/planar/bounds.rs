@@ -119,6 +119,12 @@ impl ShapeBounds {
         &self.lower
     }
 
+    /// Corners of the lower bound in m, counter-clockwise: two of a segment, one of a point.
+    #[must_use]
+    pub fn lower_corners(&self) -> &[DVec2] {
+        &self.corners
+    }
+
     /// The intersection of the half-planes: around the body.
     #[must_use]
     pub fn upper(&self) -> &Intersection {
