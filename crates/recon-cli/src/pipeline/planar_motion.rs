@@ -14,7 +14,6 @@ use recon::least_model::{Accuracy, Choice, least_plane_estimate, one_of_plane};
 use recon::object_dynamics::planar::{ContactLog, PlanarMass, PlanarTruth};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane, plane_noise};
-use recon::observer::reliability::Reliability;
 use recon_io::{
     Evidence, Level, PlanarKnown, PlaneEstimateData, Sensors, SummaryOf, Verdict, brief, brief_to,
     explanation, mode_figures, sensor_fault, verdict_figures, write_plane_estimate_report,
@@ -171,10 +170,8 @@ impl PlanarMotion {
     /// What the reader must know.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let mut all = self.of_readings.clone();
-        if let Reliability::Unreliable(reasons) = &self.estimate.reliability {
-            let reasons: Vec<String> = reasons.iter().map(ToString::to_string).collect();
-            all.push(format!("not to be relied on: {}", reasons.join("; ")));
-        } else if self.share() < 1.0 {
+        // Of what is not to be relied on at all the verdict has the reasons.
+        if self.estimate.reliability.is_reliable() && self.share() < 1.0 {
             let doubtful = self.estimate.relied_on.iter().filter(|relied| !**relied).count();
             all.push(format!(
                 "at {doubtful} of {} samples the motion is not relied on (relied_on in motion.csv is 0)",

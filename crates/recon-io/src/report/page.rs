@@ -78,8 +78,11 @@ pub(super) fn evidence_section(heading: &str, rows: &str) -> String {
     if rows.is_empty() {
         return String::new();
     }
+    // A column without a word has no name.
+    let silent = rows.matches("<td class=\"meaning\"></td>").count() == rows.matches("<tr>").count();
+    let tells = if silent { "" } else { "What it tells" };
     let head =
-        "<thead><tr><th>Quantity</th><th class=\"number\">Value</th><th>What it tells</th></tr></thead>";
+        format!("<thead><tr><th>Quantity</th><th class=\"number\">Value</th><th>{tells}</th></tr></thead>");
     section(heading, &format!("<table class=\"evidence\">\n{head}\n<tbody>\n{rows}</tbody>\n</table>\n"), "")
 }
 
@@ -119,8 +122,13 @@ pub(super) fn of_bounds(bounds: &Bounds) -> Vec<Fact> {
                 ("Lower / upper", brief_to(4, lower / upper), ""),
             ]
         }
-        None => vec![first, ("Upper bound", "unbounded".to_owned(), "")],
+        None => vec![first, unbounded()],
     }
+}
+
+/// An upper bound that is none.
+pub(super) fn unbounded() -> Fact {
+    ("Upper bound", "unbounded".to_owned(), "")
 }
 
 /// Writes a page with each `{{name}}` in it replaced by the part of that name.

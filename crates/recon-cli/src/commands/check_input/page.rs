@@ -88,8 +88,12 @@ fn of_log(log: &ContactLog, gaps: &[[f64; 2]]) -> Vec<FigurePanel> {
         room: vec![[times.first().copied().unwrap_or_default(), 0.0]],
         ..FigurePanel::default()
     };
+    // Room for five palms: numbers of palms are whole ones then.
+    let start = times.first().copied().unwrap_or_default();
+    let touched_panel =
+        FigurePanel { room: vec![[start, 0.0], [start, 5.0]], ..over_time("Touched", "palm", &touched) };
     let panels = [
-        over_time("Touched", "palm", &touched),
+        touched_panel,
         over_time("Contacts from their mean", "distance in m", &away),
         over_time("Forces", "size in N", &force),
         intervals,

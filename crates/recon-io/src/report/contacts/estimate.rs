@@ -73,18 +73,38 @@ impl EstimateData {
             && lengths.into_iter().chain(curves).all(|length| length == count)
     }
 
-    /// Largest distance of a contact from the centre of mass, m: of those relied on, if there are any.
-    fn reach(&self) -> f64 {
+    /// Where the object is at sample `k`: its centre of mass, and where no motion is relied on the mean of all contacts.
+    fn about(&self, k: usize, unknown: Option<DVec3>) -> DVec3 {
+        unknown.unwrap_or(self.estimate.states[k].p_WCm)
+    }
+
+    /// The mean of all contacts, world axes, where no motion is relied on.
+    fn unknown(&self) -> Option<DVec3> {
+        if self.estimate.relied_on.contains(&true) {
+            return None;
+        }
+        let (sum, count) =
+            self.touches().fold((DVec3::ZERO, 0.0), |(sum, count), (_, p_WC)| (sum + p_WC, count + 1.0));
+        (count > 0.0).then(|| sum / count)
+    }
+
+    /// Samples and contacts there, world axes.
+    fn touches(&self) -> impl Iterator<Item = (usize, DVec3)> {
+        let of = |palm: &'_ LoggedPalm| {
+            let touch = |k: usize| Some((k, palm.touch(k)?.p_WC));
+            (0..self.log.times().len()).filter_map(touch).collect::<Vec<_>>()
+        };
+        self.log.palms().iter().flat_map(of)
+    }
+
+    /// Largest distance of a contact from where the object is, m: of those relied on, if there are any.
+    fn reach(&self, unknown: Option<DVec3>) -> f64 {
         let largest = |lengths: &mut dyn Iterator<Item = f64>| lengths.fold(0.0, f64::max);
         let relied = largest(&mut self.curves.iter().flatten().flatten().map(|c| c.p_OC.length()));
         if relied > 0.0 {
             return relied;
         }
-        let states = self.estimate.states.iter().enumerate();
-        largest(&mut states.flat_map(|(k, state)| {
-            let touches = self.log.palms().iter().filter_map(move |palm| palm.touch(k));
-            touches.map(|touch| touch.p_WC.distance(state.p_WCm))
-        }))
+        largest(&mut self.touches().map(|(k, p_WC)| p_WC.distance(self.about(k, unknown))))
     }
 
     /// Object and palms at a few instants.
@@ -94,21 +114,29 @@ impl EstimateData {
         let first: Vec<_> =
             palms.iter().map(|palm| (palm.surface(), palm.motion(0).pose.at_rest())).collect();
         let view = View::onto(&normals(first.iter().map(|(surface, at)| (*surface, at))));
-        let reach = self.reach();
+        let unknown = self.unknown();
+        let reach = self.reach(unknown);
         let forces = samples.iter().flat_map(|&k| palms.iter().filter_map(move |palm| palm.force(k)));
         let scale = ForceScale::new(reach, forces.map(|force| force.vector.length()));
-        Pictures::of(&samples, |k| self.picture(*k, reach, scale, &view))
+        Pictures::of(&samples, |k| self.picture(*k, unknown, (reach, scale), &view))
     }
 
     /// What is seen at sample `k`, from back to front.
-    fn picture(&self, k: usize, reach: f64, scale: ForceScale, view: &View) -> Picture {
-        let p_WCm = self.estimate.states[k].p_WCm;
-        let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, p_WCm)).collect();
-        let (mut lines, front) = palms(view, &shown, p_WCm, reach);
+    fn picture(
+        &self,
+        k: usize,
+        unknown: Option<DVec3>,
+        (reach, scale): (f64, ForceScale),
+        view: &View,
+    ) -> Picture {
+        let about = self.about(k, unknown);
+        let shown: Vec<ShownPalm> = self.log.palms().iter().map(|palm| shown(palm, k, about)).collect();
+        let (mut lines, front) = palms(view, &shown, about, reach);
         lines.extend(self.paths(k, reach, view));
-        lines.extend(self.object(k, reach, view));
+        let object = if unknown.is_none() { self.object(k, reach, view) } else { Vec::new() };
+        lines.extend(object);
         lines.extend(front);
-        lines.push(Line::centre(view.place(p_WCm)));
+        lines.extend(unknown.is_none().then(|| Line::centre(view.place(about))));
         for palm in self.log.palms() {
             if let (Some(touch), Some(force)) = (palm.touch(k), palm.force(k)) {
                 lines.push(Line::force(view.place(touch.p_WC), view.place(force.vector), scale));
@@ -163,9 +191,9 @@ pub(super) fn outline(class: &str, points: &[DVec2]) -> Option<Line> {
     Some(Line::new(class, corners.iter().chain(corners.first()).copied().collect()))
 }
 
-fn shown(palm: &LoggedPalm, k: usize, p_WCm: DVec3) -> ShownPalm {
+fn shown(palm: &LoggedPalm, k: usize, about: DVec3) -> ShownPalm {
     let at: SurfaceState = palm.motion(k).pose.at_rest();
-    let next = || palm.surface().nearest(at.to_palm(p_WCm)).map_or(at.p_WP, |point| at.to_world(point.p_P));
+    let next = || palm.surface().nearest(at.to_palm(about)).map_or(at.p_WP, |point| at.to_world(point.p_P));
     let p_WC = palm.touch(k).map_or_else(next, |touch| touch.p_WC);
     ShownPalm { surface: palm.surface(), at, p_WC }
 }

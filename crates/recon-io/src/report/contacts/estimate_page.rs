@@ -11,12 +11,11 @@ use crate::planar_figures::FigurePanel;
 use recon::object_dynamics::Rhythm;
 use std::io::{self, Write};
 
-const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms; in a long log dots.";
+const OBJECT: &str = "The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, where they are seen, in the colours of the palms; in a long log dots. The dot in it is the centre of mass.";
 const PATHS: &str = "Faint lines on the palms are where each was touched until then.";
-const CAPTION: &str = "Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Flat palms go on beyond what is drawn.";
+const CAPTION: &str = "Coloured dots are contacts, also those behind the object, in the colours of the modes below, arrows their forces; g is gravity. Flat palms go on beyond what is drawn.";
 const TRUE_SHAPE: &str = " Dashed: the outline of the true shape, from the scene.";
-const NO_OBJECT: &str =
-    "The object is not drawn: where it was touched is not known under a motion that is not to be relied on.";
+const NO_OBJECT: &str = "Object and centre of mass are not drawn: where they are is not known from a motion that is not to be relied on.";
 
 pub(super) const KICKER: &str = "Motion, mass and inertia from contacts of any palms";
 const BANDS: &str = "Bands hold 95 % of what the estimate may be off by, or a reading by its noise, as standard deviations say.";
@@ -68,7 +67,7 @@ pub fn write_estimate_report(data: &EstimateData, to: impl Write) -> io::Result<
     facts.extend(data.marks.iter().cloned());
     facts.extend(data.largest_errors());
     let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
-    let truth = if data.true_shape.is_some() { TRUE_SHAPE } else { "" };
+    let truth = if data.true_shape.is_some() && object == OBJECT { TRUE_SHAPE } else { "" };
     let page = EstimatePage {
         kicker: KICKER,
         title: &data.title,

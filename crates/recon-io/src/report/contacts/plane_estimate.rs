@@ -1,6 +1,6 @@
 //! A motion that was estimated in the plane, as its page shows it.
 
-use super::super::page::{Fact, of_body};
+use super::super::page::{Fact, of_body, unbounded};
 use super::super::{Evidence, Verdict};
 use super::estimate::outline;
 use super::estimate_page::{EstimatePage, KICKER};
@@ -17,8 +17,9 @@ use std::io::{self, Write};
 
 /// Points of a contact curve that are drawn at most.
 const TRACED: usize = 200;
-const CAPTION: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms; in a long log dots. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
-const NO_OBJECT: &str = "To one scale. The object is not drawn: where it was touched is not known under a motion that is not to be relied on. Coloured dots are contacts, in the colours of the modes below, arrows their forces; the other dot is the centre of mass, g gravity. Palms go on beyond what is drawn, but for circles.";
+const OBJECT: &str = "To one scale. The grey area is what the contacts of the whole log that are relied on span, moved with the estimated motion: the object itself goes beyond it. Lines on it are the contact curves, in the colours of the palms; in a long log dots. The dot in it is the centre of mass.";
+const NO_OBJECT: &str = "To one scale. Object and centre of mass are not drawn: where they are is not known from a motion that is not to be relied on.";
+const CAPTION: &str = "Coloured dots are contacts, in the colours of the modes below, arrows their forces; g is gravity. Palms go on beyond what is drawn, but for circles.";
 
 /// Everything that is told about a motion that was estimated in the plane.
 #[derive(Clone, Debug)]
@@ -61,7 +62,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
     }
     let times: Vec<f64> = samples.iter().map(|sample| sample.t).collect();
-    let relied = found.relied_on.iter().any(|relied| *relied);
+    let object = if found.relied_on.contains(&true) { OBJECT } else { NO_OBJECT };
     let page = EstimatePage {
         kicker: KICKER,
         title: &data.title,
@@ -71,7 +72,7 @@ pub fn write_plane_estimate_report(data: &PlaneEstimateData, to: impl Write) -> 
         warnings: &data.warnings,
         facts: facts(data, &times),
         pictures: data.pictures(),
-        caption: if relied { CAPTION } else { NO_OBJECT }.to_owned(),
+        caption: format!("{object} {CAPTION}"),
         spans: (0..found.contacts.len())
             .map(|palm| estimated_mode_spans(&times, &found.modes, found.mode_odds.as_ref(), palm))
             .collect(),
@@ -93,7 +94,10 @@ fn facts(data: &PlaneEstimateData, times: &[f64]) -> Vec<Fact> {
     facts.extend(of_body(&data.evidence));
     if let Some([lower, upper]) = data.areas {
         facts.push(("Lower bound", brief(lower), "m²"));
-        facts.push(("Upper bound", brief(upper), "m²"));
+        facts.push(match upper.is_finite() {
+            true => ("Upper bound", brief(upper), "m²"),
+            false => unbounded(),
+        });
     }
     facts
 }
@@ -120,31 +124,53 @@ impl PlaneEstimateData<'_> {
     fn pictures(&self) -> Pictures {
         let samples: Vec<usize> = (0..self.log.samples().len()).collect();
         let traces = self.traces();
-        let reach = self.reach();
+        let unknown = self.unknown();
+        let reach = self.reach(unknown);
         let forces = self.log.samples().iter().flat_map(|sample| &sample.palms);
         let scale = ForceScale::new(reach, forces.map(|palm| palm.force.length()));
-        Pictures::of(&samples, |k| self.picture(*k, (reach, scale), &traces))
+        Pictures::of(&samples, |k| self.picture(*k, unknown, (reach, scale), &traces))
     }
 
-    /// Largest distance of a contact from the centre of mass, m.
-    fn reach(&self) -> f64 {
-        let contacts = self.estimate.contacts.iter().flatten().flatten();
-        contacts.map(|contact| contact.p_OC.length()).fold(0.0, f64::max)
+    /// The mean of all contacts, world axes, where no motion is relied on.
+    fn unknown(&self) -> Option<DVec2> {
+        if self.estimate.relied_on.contains(&true) {
+            return None;
+        }
+        let touches = self.log.samples().iter().flat_map(|sample| &sample.palms).filter_map(|palm| palm.p_WC);
+        let (sum, count) = touches.fold((DVec2::ZERO, 0.0), |(sum, count), p_WC| (sum + p_WC, count + 1.0));
+        (count > 0.0).then(|| sum / count)
+    }
+
+    /// Largest distance of a contact from where the object is, m.
+    fn reach(&self, unknown: Option<DVec2>) -> f64 {
+        let largest = |lengths: &mut dyn Iterator<Item = f64>| lengths.fold(0.0, f64::max);
+        match unknown {
+            Some(about) => {
+                let palms = self.log.samples().iter().flat_map(|sample| &sample.palms);
+                largest(&mut palms.filter_map(|palm| Some(palm.p_WC?.distance(about))))
+            }
+            None => {
+                let contacts = self.estimate.contacts.iter().flatten().flatten();
+                largest(&mut contacts.map(|contact| contact.p_OC.length()))
+            }
+        }
     }
 
     fn picture(
         &self,
         k: usize,
+        unknown: Option<DVec2>,
         (reach, scale): (f64, ForceScale),
         traces: &[Vec<Option<&PlaneContact>>],
     ) -> Picture {
         let (sample, state) = (&self.log.samples()[k], &self.estimate.states[k]);
+        let about = unknown.unwrap_or(state.p_WCm);
         let surfaces = self.log.surfaces().iter().zip(&sample.palms).enumerate();
         let mut lines: Vec<Line> = surfaces
             .map(|(i, (surface, now))| {
                 let (p_WP, angle) = (now.pose.p_WP, now.pose.angle);
-                let at = PalmAt { p_WP, angle, p_WC: now.p_WC.unwrap_or(state.p_WCm) };
-                palm(*surface, i, &at, state.p_WCm, reach)
+                let at = PalmAt { p_WP, angle, p_WC: now.p_WC.unwrap_or(about) };
+                palm(*surface, i, &at, about, reach)
             })
             .collect();
         let turn = DVec2::from_angle(state.phi0);
@@ -155,7 +181,7 @@ impl PlaneEstimateData<'_> {
             let places = trace.iter().map(|contact| contact.map(placed));
             lines.extend(Line::through(&format!("trace p{}", i + 1), places, reach));
         }
-        lines.push(Line::centre(state.p_WCm));
+        lines.extend(unknown.is_none().then(|| Line::centre(about)));
         for now in &sample.palms {
             lines.extend(now.p_WC.map(|p_WC| Line::force(p_WC, now.force, scale)));
         }
