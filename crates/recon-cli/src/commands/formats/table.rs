@@ -40,7 +40,7 @@ const MODE_ODDS: Column = may(
     "how probable it is that palm i slides and that it sticks; off is what is left to 1",
 );
 
-pub(super) const FORMATS: [Format; 24] = [
+pub(super) const FORMATS: [Format; 26] = [
     Format {
         name: "log",
         about: "sensor log, version 1: three flat palms through the origin. t1 of a palm is horizontal, t2 points up it, n towards the object, t1 = t2 x n",
@@ -233,6 +233,36 @@ pub(super) const FORMATS: [Format; 24] = [
             MODE,
             MODE_ODDS,
             may("relied_on", "-", "1 where the motion is relied on to within its deviations"),
+        ],
+    },
+    Format {
+        name: "planar-motion",
+        about: "motion.csv of a log in the plane: the estimated motion with deviations, modes, their probabilities, and marks",
+        columns: &[
+            needed("t", "s", "time"),
+            needed(
+                "x, y, phi0, vx, vy, omega0",
+                "m, rad, m/s, rad/s",
+                "centre of mass, turn since the first sample, velocities, world axes",
+            ),
+            may(
+                "std_x, std_y, std_phi0, std_vx, std_vy, std_omega0",
+                "m, rad, m/s, rad/s",
+                "standard deviations of these",
+            ),
+            MODE,
+            MODE_ODDS,
+            may("relied_on", "-", "1 where the motion is relied on to within its deviations"),
+        ],
+    },
+    Format {
+        name: "contact-points",
+        about: "contact_points.csv of a log in the plane: where the palms touched the object, in the axes of the world at the first sample, from the centre of mass",
+        columns: &[
+            needed("palm", "-", "number of the palm, from 1"),
+            needed("t", "s", "time"),
+            needed("x, y", "m", "point"),
+            needed("nx, ny", "1", "outward unit normal"),
         ],
     },
     Format {
