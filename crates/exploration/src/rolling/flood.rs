@@ -6,7 +6,7 @@ use super::belief::Belief;
 use super::drawn::{DrawnBody, cell_at};
 use super::gain::removed;
 use super::palms::PREDICTED;
-use super::planner::{RollPlanError, RollProposal, View};
+use super::planner::{RollProposal, View};
 use super::predict::Course;
 use super::workspace::{along, pair, radians};
 use crate::planner::Reason;
@@ -85,13 +85,9 @@ fn followed(
     Some((phi, thetas))
 }
 
-/// The way to the place with a gain worth it (`least`, m^2) that is nearest, on some of the bodies; where there is none on any of
-/// them, the directions that nothing reaches.
-pub(super) fn far_motion(
-    view: &View<'_>,
-    belief: &Belief,
-    least: f64,
-) -> Result<RollProposal, RollPlanError> {
+/// The way to the place with a gain worth it (`least`, m^2) that is nearest, on some of the bodies; none where there is none on any of
+/// them.
+pub(super) fn far_motion(view: &View<'_>, belief: &Belief, least: f64) -> Option<RollProposal> {
     let mut best: Option<RollProposal> = None;
     for (k, (body, (phi, _))) in belief.bodies.iter().zip(&belief.swings).enumerate() {
         if k >= ROUTED && best.is_some() {
@@ -114,7 +110,7 @@ pub(super) fn far_motion(
             best = Some(proposal);
         }
     }
-    best.ok_or_else(|| RollPlanError::NotFound { directions: unreached(view, belief) })
+    best
 }
 
 fn legs(places: &[Place], to: usize) -> Vec<[f64; 2]> {

@@ -11,6 +11,8 @@ pub struct Track {
     pub palms: [f64; 2],
     /// Orientation of the body, rad.
     pub phi: f64,
+    /// How often it fell so far.
+    pub falls: usize,
     /// Sums over readings of `m m^T` and `m (m . P)`, with the horizontal `m` in body axes and the point `P` where the forces meet.
     sums: (DMat2, DVec2),
     /// Centre of mass in body axes, m, where it is known.
@@ -27,7 +29,8 @@ impl Track {
     #[must_use]
     pub fn new(reading: &Reading) -> Self {
         let sums = (DMat2::ZERO, DVec2::ZERO);
-        let mut track = Self { palms: reading.palms, phi: reading.phi, sums, centre: None, dynamics: None };
+        let (palms, phi) = (reading.palms, reading.phi);
+        let mut track = Self { palms, phi, falls: 0, sums, centre: None, dynamics: None };
         track.follow(reading);
         track
     }
@@ -36,12 +39,13 @@ impl Track {
     /// rest without.
     #[must_use]
     pub fn about(palms: [f64; 2], phi: f64, centre: DVec2, dynamics: Option<Dynamics>) -> Self {
-        Self { palms, phi, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(centre), dynamics }
+        Self { palms, phi, falls: 0, sums: (DMat2::ZERO, DVec2::ZERO), centre: Some(centre), dynamics }
     }
 
     /// After another one. At rest the weight passes through the point where the forces meet: a line that the centre of mass is on.
     pub fn follow(&mut self, reading: &Reading) {
         (self.palms, self.phi) = (reading.palms, reading.phi);
+        self.falls += usize::from(reading.fell);
         if let Some(met) = reading.meeting() {
             let level = DVec2::from_angle(-reading.phi);
             self.sums.0 += DMat2::from_cols(level * level.x, level * level.y);

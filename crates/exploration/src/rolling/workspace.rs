@@ -125,16 +125,33 @@ impl Workspace {
             && within(palms[1] - palms[0], self.wedge)
     }
 
-    /// All allowed points of a lattice of `spacing` rad or less in both angles, row by row.
+    /// All allowed points of a lattice of `spacing` rad or less, row by row: in both angles, and where too few of these are allowed in one angle and the wedge.
     #[must_use]
     pub fn lattice(&self, spacing: f64) -> Vec<[f64; 2]> {
         let line = |[low, high]: [f64; 2]| -> Vec<f64> {
+            if high <= low {
+                return vec![low];
+            }
             let parts = ((high - low) / spacing).ceil().max(1.0);
             (0..=parts as usize).map(|k| low + (high - low) * k as f64 / parts).collect()
         };
-        let (first, second) = (line(self.angles[0]), line(self.angles[1]));
-        let all = first.iter().flat_map(|a| second.iter().map(move |b| [*a, *b]));
-        all.filter(|palms| self.allows(*palms)).collect()
+        let [one, two] = self.angles.map(line);
+        let wedges = line(self.wedge);
+        let pairs = |rows: &[f64], columns: &[f64], at: fn(f64, f64) -> [f64; 2]| -> Vec<[f64; 2]> {
+            let all = rows.iter().flat_map(|a| columns.iter().map(move |b| at(*a, *b)));
+            all.filter(|palms| self.allows(*palms)).collect()
+        };
+        let in_angles = pairs(&one, &two, |a, b| [a, b]);
+        if in_angles.len() > 1 {
+            return in_angles;
+        }
+        let with_wedge = [
+            pairs(&one, &wedges, |a, wedge| [a, a + wedge]),
+            pairs(&two, &wedges, |b, wedge| [b - wedge, b]),
+        ];
+        let larger =
+            |all: Vec<[f64; 2]>, others: Vec<[f64; 2]>| if others.len() > all.len() { others } else { all };
+        with_wedge.into_iter().fold(in_angles, larger)
     }
 
     /// Duration in s of a straight way between two pairs of angles, at the largest speed.

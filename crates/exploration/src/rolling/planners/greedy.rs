@@ -28,7 +28,7 @@ impl RollPlanner for LargestGap {
         let belief = belief(view, BODIES, self.seed)?;
         let all = candidates(view, &belief, &Course::start(&belief, view.track));
         let least = worth(view, &belief);
-        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+        if let Some(instead) = self.idle.instead(view, &belief, least)? {
             return Ok(instead);
         }
         match first_largest(all.iter().map(|c| c.prediction.gain)) {
@@ -37,7 +37,7 @@ impl RollPlanner for LargestGap {
                 expected: Some(all[k].prediction),
                 reason: Reason::Best,
             }),
-            _ => self.idle.far(view, &belief, least, self.seed),
+            _ => self.idle.far(view, &belief, least),
         }
     }
 }

@@ -6,6 +6,7 @@ mod near;
 mod random;
 mod rate;
 mod sweep;
+mod walk;
 
 pub use greedy::LargestGap;
 pub use near::NearestGap;

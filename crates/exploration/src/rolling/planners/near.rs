@@ -45,12 +45,12 @@ impl RollPlanner for NearestGap {
         let start = Course::start(&belief, view.track);
         let all = candidates(view, &belief, &start);
         let least = worth(view, &belief);
-        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+        if let Some(instead) = self.idle.instead(view, &belief, least)? {
             return Ok(instead);
         }
         let Some((best, gain)) = first_largest(all.iter().map(|c| c.prediction.gain)).filter(|b| b.1 > least)
         else {
-            return self.idle.far(view, &belief, least, self.seed);
+            return self.idle.far(view, &belief, least);
         };
         let good = (0..all.len()).filter(|k| all[*k].prediction.gain >= self.share * gain);
         let way = |k: &usize| mean_distance(view, &belief, &start, &all[*k]);

@@ -69,7 +69,7 @@ impl RollPlanner for InformationRate {
     fn next(&mut self, view: &View<'_>) -> Result<RollProposal, RollPlanError> {
         let belief = belief(view, self.bodies, self.seed)?;
         let least = worth(view, &belief);
-        if let Some(instead) = self.idle.instead(view, &belief, least, self.seed)? {
+        if let Some(instead) = self.idle.instead(view, &belief, least)? {
             return Ok(instead);
         }
         // Courses, each with the first of its motions.
@@ -98,7 +98,7 @@ impl RollPlanner for InformationRate {
             Some((_, (to, prediction))) => {
                 Ok(RollProposal { legs: vec![to], expected: Some(prediction), reason: Reason::Best })
             }
-            None => self.idle.far(view, &belief, least, self.seed),
+            None => self.idle.far(view, &belief, least),
         }
     }
 }
