@@ -5,7 +5,7 @@ use crate::diagram::{Axis, Method, WorkPrecision};
 use crate::parallel;
 use crate::reaching::Bodies;
 use crate::reaching::statistics::quantile;
-use crate::rolling::{PLANNERS, runs};
+use crate::rolling::{Asked, PLANNERS, runs};
 use crate::{Budget, Diagram};
 
 pub(super) const CHART: Chart = Chart {
@@ -15,7 +15,7 @@ pub(super) const CHART: Chart = Chart {
 };
 
 /// Bodies as in the study, and of a smoke test.
-const BODIES: [Bodies; 2] = [Bodies { first: 84_000, each: 10 }, Bodies { first: 84_000, each: 1 }];
+const BODIES: [Bodies; 2] = [Bodies { first: 86_000, each: 10 }, Bodies { first: 86_000, each: 1 }];
 /// Radians of palm motion at most, as in the study.
 const RADIANS: f64 = 40.0;
 /// The last goal of each.
@@ -28,7 +28,7 @@ fn draw(budget: Budget) -> Drawn {
     let (bodies, last) = (budget.of(BODIES), budget.of(LAST));
     let mut methods = Vec::new();
     for planner in &PLANNERS {
-        let all = runs(planner, bodies, last, RADIANS, None)?;
+        let all = runs(planner, bodies, &Asked { goal: last, radians: RADIANS, noise: None, room: None })?;
         methods.push(method(planner.name, last, |goal| all.iter().map(|run| run.to(goal)).collect()));
     }
     let (solids, closest) = (budget.of(SOLIDS), budget.of(LAST_OF_SOLIDS));

@@ -33,11 +33,15 @@ const NEAR: f64 = 0.15;
 const ALIKE: f64 = FRAC_1_SQRT_2;
 
 impl Wall {
-    /// Whether a stroke along `heading` from `hold` goes on into it. Squeezed from either side a body is the same.
+    /// Whether a stroke along `heading` from `hold` goes on into it.
     pub(super) fn stops(&self, hold: &Hold, heading: DVec2) -> bool {
-        let ([up, _], along) = (hold.normals(), hold.onwards(heading));
-        let side = self.at.get().dot(up.get()).signum();
-        (self.at.get() * side - up.get()).length() < NEAR && self.along.dot(along) * side > ALIKE
+        self.is_met(hold.normals()[0].get(), hold.onwards(heading))
+    }
+
+    /// Whether it is met by going along a unit vector from a normal at the upper contact, both in body axes. Squeezed from either side a body is the same.
+    pub(super) fn is_met(&self, up: DVec3, along: DVec3) -> bool {
+        let side = self.at.get().dot(up).signum();
+        (self.at.get() * side - up).length() < NEAR && self.along.dot(along) * side > ALIKE
     }
 }
 

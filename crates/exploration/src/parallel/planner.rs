@@ -49,8 +49,8 @@ pub struct ParallelProposal {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ParallelPlanError {
-    /// On no body drawn was a stroke found that uncovers what is left: no proof that there is none on the true one.
-    #[error("no stroke was found that uncovers what is left, at {} directions of the body; that is no proof that there is none", directions.len())]
+    /// No stroke uncovers what is left: on no body drawn, and all that the palms can do was gone through, in steps of 0.3 rad, up to where friction or a pad ended it.
+    #[error("no stroke uncovers what is left, at {} directions of the body: all that the palms can do was gone through in steps of 0.3 rad", directions.len())]
     NotFound {
         /// Outward normals in body axes where the bounds are farthest apart, the farthest first.
         directions: Vec<Direction>,
@@ -83,45 +83,12 @@ const TURNS: [f64; 3] = [0.4, 0.9, FRAC_PI_2];
 const AIMED: usize = 6;
 /// A stroke is worth its way if it is expected to bring this share of what is still to be gained.
 const WORTH: f64 = 0.01;
-/// The first strokes are crosswise and so long, rad: then normals span all directions.
-const FIRST: f64 = 0.9;
-/// Strokes without a contact after which the body is rolled away in whatever direction, and after which what is left counts as out of reach.
-const AWAY: usize = 3;
-const GIVEN_UP: usize = 12;
 
 impl ParallelView<'_> {
     /// Bodies drawn for the view, of a planner with `seed`.
     pub(super) fn bodies(&self, count: usize, seed: u64) -> Vec<DrawnBody> {
         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(self.stroke as u64);
         drawn(self.known, self.workspace, self.goal, count, seed)
-    }
-
-    /// The stroke to be made in place of a planner's own: crosswise while the upper bound has no end, away where those before brought nothing.
-    ///
-    /// # Errors
-    /// [`ParallelPlanError::NotFound`] where too many brought nothing.
-    pub(super) fn instead(
-        &self,
-        bodies: &[DrawnBody],
-    ) -> Result<Option<ParallelProposal>, ParallelPlanError> {
-        if self.idle >= GIVEN_UP {
-            return Err(self.not_found());
-        }
-        let stroke = |heading: f64, turn: f64| Stroke { heading, turn };
-        let (k, reason) = (self.stroke as f64, Reason::Start);
-        if bodies.is_empty() {
-            let proposal = ParallelProposal { stroke: stroke(k * FRAC_PI_2, FIRST), expected: None, reason };
-            return Ok(Some(proposal));
-        }
-        // By the golden angle, so that no two are alike.
-        let away = stroke((k * TAU * 0.381_966).rem_euclid(TAU), FRAC_PI_2);
-        let proposal = ParallelProposal { stroke: away, expected: None, reason: Reason::Sequence };
-        Ok((self.idle >= AWAY).then_some(proposal))
-    }
-
-    /// Where the bounds are farthest apart.
-    pub(super) fn not_found(&self) -> ParallelPlanError {
-        ParallelPlanError::NotFound { directions: self.farthest_gaps() }
     }
 
     /// Directions of the farthest corners of the upper bound from the lower one.
@@ -160,7 +127,7 @@ impl ParallelView<'_> {
 }
 
 /// The shortest stroke that brings `along` (body axes) or its opposite to a contact; none where it is there.
-fn towards(hold: &Hold, along: Direction) -> Option<Stroke> {
+pub(super) fn towards(hold: &Hold, along: Direction) -> Option<Stroke> {
     let v = hold.R_WO * along.get();
     let v = if v.z < 0.0 { -v } else { v };
     let level = v.truncate();

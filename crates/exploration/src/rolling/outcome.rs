@@ -9,7 +9,7 @@ use shape_bounds::exact_hull::planar::Direction;
 pub enum RollEnd {
     /// All motions or radians were made that were allowed for, or all contacts taken that the confidence was shared among.
     Budget,
-    /// The planner found no motion that uncovers what is left. Nothing is proven by that.
+    /// No motion uncovers what is left: all that the palms can do was gone through, in steps of 0.3 rad, but for what the risk forbids.
     NotFound {
         /// Outward normals in body axes, with the most left first.
         directions: Vec<Direction>,

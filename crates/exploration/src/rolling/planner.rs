@@ -44,8 +44,9 @@ pub struct RollProposal {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum RollPlanError {
-    /// On no body drawn was a motion found that uncovers what is left: no proof that there is none on the true one.
-    #[error("no motion was found that uncovers what is left, at {} directions of the body; that is no proof that there is none", directions.len())]
+    /// No motion uncovers what is left: on no body drawn, and none of all steps that the palms can make from where they can get to, on a lattice and within the
+    /// risk, leads to what was not there before.
+    #[error("no motion of the palms uncovers what is left, at {} directions of the body: all that they can do was gone through in steps of 0.3 rad", directions.len())]
     NotFound {
         /// Outward normals in body axes, with the most left first.
         directions: Vec<Direction>,

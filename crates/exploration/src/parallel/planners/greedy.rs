@@ -1,3 +1,4 @@
+use super::idle::Idle;
 use super::{BODIES, best};
 use crate::parallel::planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
 use crate::parallel::predict::Course;
@@ -7,13 +8,14 @@ use crate::planner::Reason;
 #[derive(Clone, Debug)]
 pub struct LargestGap {
     seed: u64,
+    idle: Idle,
 }
 
 impl LargestGap {
     /// With bodies of this seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { seed }
+        Self { seed, idle: Idle::default() }
     }
 }
 
@@ -24,11 +26,11 @@ impl ParallelPlanner for LargestGap {
 
     fn next(&mut self, view: &ParallelView<'_>) -> Result<ParallelProposal, ParallelPlanError> {
         let bodies = view.bodies(BODIES, self.seed);
-        if let Some(instead) = view.instead(&bodies)? {
+        if let Some(instead) = self.idle.instead(view, &bodies)? {
             return Ok(instead);
         }
         let all = view.candidates(&bodies, &Course::start(&bodies, view.hold), &view.farthest_gaps());
-        let (k, _) = best(&all, view.worth()).ok_or_else(|| view.not_found())?;
+        let Some((k, _)) = best(&all, view.worth()) else { return self.idle.walked(view) };
         let (stroke, expected) = (all[k].stroke, Some(all[k].prediction));
         Ok(ParallelProposal { stroke, expected, reason: Reason::Best })
     }

@@ -1,10 +1,12 @@
 //! Planners of strokes.
 
 mod greedy;
+mod idle;
 mod near;
 mod random;
 mod rate;
 mod sweep;
+mod walk;
 
 pub use greedy::LargestGap;
 pub use near::NearestGap;

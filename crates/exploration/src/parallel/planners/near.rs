@@ -1,3 +1,4 @@
+use super::idle::Idle;
 use super::{BODIES, best};
 use crate::parallel::hold::Hold;
 use crate::parallel::planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
@@ -12,6 +13,7 @@ use glam::{DQuat, DVec3};
 #[derive(Clone, Debug)]
 pub struct NearestGap {
     seed: u64,
+    idle: Idle,
 }
 
 /// Share of the best gain that is enough.
@@ -21,7 +23,7 @@ impl NearestGap {
     /// With bodies of this seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self { seed }
+        Self { seed, idle: Idle::default() }
     }
 }
 
@@ -32,11 +34,11 @@ impl ParallelPlanner for NearestGap {
 
     fn next(&mut self, view: &ParallelView<'_>) -> Result<ParallelProposal, ParallelPlanError> {
         let bodies = view.bodies(BODIES, self.seed);
-        if let Some(instead) = view.instead(&bodies)? {
+        if let Some(instead) = self.idle.instead(view, &bodies)? {
             return Ok(instead);
         }
         let all = view.candidates(&bodies, &Course::start(&bodies, view.hold), &view.farthest_gaps());
-        let (first, gain) = best(&all, view.worth()).ok_or_else(|| view.not_found())?;
+        let Some((first, gain)) = best(&all, view.worth()) else { return self.idle.walked(view) };
         let good = (0..all.len()).filter(|k| all[*k].prediction.gain >= SHARE * gain);
         let way = |k: usize| {
             let ends = all[k].course.holds.iter().zip(&bodies);

@@ -1,4 +1,5 @@
 use super::BODIES;
+use super::idle::Idle;
 use crate::parallel::hold::Stroke;
 use crate::parallel::planner::{ParallelPlanError, ParallelPlanner, ParallelProposal, ParallelView};
 use crate::parallel::predict::{Course, Prediction};
@@ -10,6 +11,7 @@ pub struct PathRate {
     seed: u64,
     horizon: usize,
     bodies: usize,
+    idle: Idle,
 }
 
 /// Courses that are followed up at each depth.
@@ -21,7 +23,7 @@ impl PathRate {
     /// Looking `horizon` strokes ahead (1 looks no further than the next), on bodies of this seed.
     #[must_use]
     pub fn new(seed: u64, horizon: usize) -> Self {
-        Self { seed, horizon: horizon.max(1), bodies: BODIES }
+        Self { seed, horizon: horizon.max(1), bodies: BODIES, idle: Idle::default() }
     }
 
     /// On so many bodies drawn, one at least.
@@ -41,7 +43,7 @@ impl ParallelPlanner for PathRate {
 
     fn next(&mut self, view: &ParallelView<'_>) -> Result<ParallelProposal, ParallelPlanError> {
         let bodies = view.bodies(self.bodies, self.seed);
-        if let Some(instead) = view.instead(&bodies)? {
+        if let Some(instead) = self.idle.instead(view, &bodies)? {
             return Ok(instead);
         }
         let mut beam: Vec<(Course, Option<First>)> = vec![(Course::start(&bodies, view.hold), None)];
@@ -67,7 +69,7 @@ impl ParallelPlanner for PathRate {
             }
             beam = found.into_iter().take(BEAM).map(|(_, course, first)| (course, Some(first))).collect();
         }
-        let (_, (stroke, expected)) = best.ok_or_else(|| view.not_found())?;
+        let Some((_, (stroke, expected))) = best else { return self.idle.walked(view) };
         Ok(ParallelProposal { stroke, expected: Some(expected), reason: Reason::Best })
     }
 }

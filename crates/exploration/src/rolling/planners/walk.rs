@@ -4,6 +4,7 @@
 //! leads to a state that was there before, the palms can do nothing else: no motion uncovers more, up to what hides between the nodes.
 
 use crate::planner::Reason;
+use crate::random::Source;
 use crate::rolling::belief::Belief;
 use crate::rolling::planner::{RollProposal, SPACING, View};
 use crate::rolling::predict::Course;
@@ -75,7 +76,10 @@ impl Walk {
         if !rest.is_empty() {
             return Some(proposed(route[1..].iter().map(|state| self.palms(*state)).collect()));
         }
-        let step = self.states[*last].untried()?;
+        // Any of them: who asks for one motion at a time, without memory, so does not go to and fro.
+        let open = self.states[*last].untried();
+        let drawn = Source::new(view.motion as u64).unit() * open.len() as f64;
+        let step = open.get(drawn as usize).copied()?;
         self.under_way = Some(UnderWay { state: here, step, falls: view.track.falls });
         Some(proposed(vec![self.nodes[self.states[here].steps[step].node]]))
     }
@@ -131,7 +135,7 @@ impl Walk {
         loop {
             let open = (0..ways.len()).filter(|k| !done[*k] && ways[*k].is_finite());
             let next = open.min_by(|a, b| ways[*a].total_cmp(&ways[*b]))?;
-            if self.states[next].untried().is_some() {
+            if !self.states[next].untried().is_empty() {
                 let mut route: Vec<usize> = std::iter::successors(Some(next), |k| from[*k]).collect();
                 route.reverse();
                 return Some(route);
@@ -149,8 +153,8 @@ impl Walk {
 }
 
 impl State {
-    fn untried(&self) -> Option<usize> {
-        self.steps.iter().position(|step| step.led == Led::Untried)
+    fn untried(&self) -> Vec<usize> {
+        (0..self.steps.len()).filter(|k| self.steps[*k].led == Led::Untried).collect()
     }
 }
 

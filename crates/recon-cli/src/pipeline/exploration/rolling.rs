@@ -147,8 +147,8 @@ pub(super) fn why_short(end: &RollEnd) -> String {
         RollEnd::NotFound { directions } => {
             let first = directions.first().map_or(f64::NAN, |n| n.angle().to_degrees());
             format!(
-                "the planner found no motion that uncovers what is left, most of it at {} degrees on the object; that is no proof that \
-                 there is none",
+                "no motion of these palms uncovers what is left, most of it at {} degrees on the object: all that they can do was gone \
+                 through, in steps of 0.3 rad",
                 brief_to(3, first)
             )
         }

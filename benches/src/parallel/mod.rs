@@ -1,5 +1,7 @@
 //! Strokes of a palm on seeded bodies: the runs behind the study `parallel` and its chart.
 
+pub mod reachable;
+
 use crate::reaching::{Bodies, Named};
 use crate::rows::{Cells, rows_in_threads};
 use exploration::generators::{Family, solid};
@@ -69,6 +71,10 @@ pub struct Rolling {
     pub short: Option<&'static str>,
     /// Whether the body was between the bounds after every contact.
     pub holds: bool,
+    /// Normal at the upper contact when it was first held, body axes; none where it was held nowhere.
+    pub up: Option<[f64; 3]>,
+    /// Directions that were named as out of reach, body axes.
+    pub named: Vec<[f64; 3]>,
 }
 
 impl Rolling {
@@ -129,6 +135,8 @@ pub fn run(
         planning: [0.0; 2],
         short: None,
         holds: true,
+        up: None,
+        named: Vec::new(),
     };
     let palms = SimulatedParallelPalms::new(&body, workspace, Source::new(seed).rotation());
     let Ok(mut palms) = palms else {
@@ -158,6 +166,7 @@ pub fn run(
     let (mut turned, mut last, mut seen) = (0.0, None, 0);
     let outcome = explore_parallel(&mut known, &mut planner, palms, &task, |step, known| {
         let up = step.reading.hold.normals()[0];
+        run.up.get_or_insert(up.get().to_array());
         turned += last.map_or(0.0, |last: Direction| last.angle_to(up));
         last = Some(up);
         run.steps.push([step.way / size, turned, step.progress]);
@@ -179,6 +188,9 @@ pub fn run(
         Outcome::Short { shortfall: Shortfall::Budget, .. } => Some(SHORT[0]),
         Outcome::Short { .. } => Some(SHORT[1]),
     };
+    if let Outcome::Short { shortfall: Shortfall::NotFound { directions }, .. } = outcome {
+        run.named = directions.iter().filter_map(|d| d.as_slice().try_into().ok()).collect();
+    }
     (run.planning, run.contacts) = (planner.seconds, known.touches());
     Ok(run)
 }
@@ -202,6 +214,8 @@ impl Cells for Rolling {
         self.steps.write(to);
         (self.strokes, self.contacts, self.planning).write(to);
         (self.short.map(str::to_owned), self.holds).write(to);
+        self.up.write(to);
+        self.named.write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
@@ -214,6 +228,8 @@ impl Cells for Rolling {
             Some(word) => Some(SHORT.into_iter().find(|short| *short == word)?),
             None => None,
         };
-        Some(Self { family, steps, strokes, contacts, planning, short, holds })
+        let up = Cells::read(from)?;
+        let named = Cells::read(from)?;
+        Some(Self { family, steps, strokes, contacts, planning, short, holds, up, named })
     }
 }

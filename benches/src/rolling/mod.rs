@@ -1,5 +1,7 @@
 //! Palm motions on seeded bodies: the runs behind the study `rolling` and its chart.
 
+pub mod reachable;
+
 use crate::reaching::Bodies;
 use crate::rows::{Cells, rows_in_threads};
 use exploration::generators::{Family, Outline, outline};
@@ -123,8 +125,8 @@ pub struct Rolling {
     pub planning: f64,
     /// Why it ended short, in a word; none where the goal is proven.
     pub short: Option<&'static str>,
-    /// Directions that were named as out of reach.
-    pub named: usize,
+    /// Directions that were named as out of reach, rad.
+    pub named: Vec<f64>,
     /// Whether the body was between the bounds after every reading.
     pub holds: bool,
     /// Contacts taken.
@@ -167,22 +169,53 @@ pub struct Noisy {
     pub budget: usize,
 }
 
-/// One run to a gap, within so many radians.
+/// What is asked for, and with what.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// The gap.
+    pub goal: f64,
+    /// Radians of palm motion at most.
+    pub radians: f64,
+    /// Of the contacts; none of exact ones.
+    pub noise: Option<Noisy>,
+    /// How far each palm may be from where it starts, rad; none for palms that turn almost from one side to the other.
+    pub room: Option<f64>,
+}
+
+/// Where palms start, rad.
+pub const START: [f64; 2] = [0.7, 2.4];
+
+impl Asked {
+    /// The limits of the palms about a body of this mean width (m).
+    #[must_use]
+    pub fn workspace(&self, width: f64) -> Workspace {
+        let whole = Workspace::for_size(width);
+        let angles = self.room.map(|room| START.map(|at| [at - room, at + room]));
+        Workspace { angles: angles.unwrap_or(whole.angles), ..whole }
+    }
+}
+
+/// Orientation in which the body of a seed is let go, rad.
+#[must_use]
+pub fn let_go(seed: u64) -> f64 {
+    Source::new(seed).between(0.0, TAU)
+}
+
+/// One run.
 ///
 /// # Errors
 /// Those of the exploration.
 pub fn run(
     make: fn(u64) -> Box<dyn RollPlanner>,
     (family, seed): (Family, u64),
-    goal: f64,
-    radians: f64,
-    noise: Option<Noisy>,
+    asked: &Asked,
 ) -> Result<Rolling, RollError> {
+    let Asked { goal, radians, noise, .. } = *asked;
     let (body, width) = rolled(family, seed);
     let truth = rolled(family, seed).0;
-    let workspace = Workspace::for_size(width);
-    let phi = Source::new(seed).between(0.0, TAU);
-    let mut palms = SimulatedPalms::new(body, workspace.length, [0.7, 2.4], phi).map_err(RollError::Start)?;
+    let workspace = asked.workspace(width);
+    let mut palms =
+        SimulatedPalms::new(body, workspace.length, START, let_go(seed)).map_err(RollError::Start)?;
     let mut task = RollTask { radians, motions: 400, ..RollTask::new(Goal::Gap(goal), workspace) };
     let mut known = PlanarKnowledge::exact();
     if let Some(Noisy { level, budget }) = noise {
@@ -205,12 +238,12 @@ pub fn run(
         }
     })?;
     let (short, named) = match &outcome {
-        RollOutcome::Reached(_) => (None, 0),
-        RollOutcome::Short { end: RollEnd::Budget, .. } => (Some(SHORT[0]), 0),
+        RollOutcome::Reached(_) => (None, Vec::new()),
+        RollOutcome::Short { end: RollEnd::Budget, .. } => (Some(SHORT[0]), Vec::new()),
         RollOutcome::Short { end: RollEnd::NotFound { directions }, .. } => {
-            (Some(SHORT[1]), directions.len())
+            (Some(SHORT[1]), directions.iter().map(|d| d.get().to_angle()).collect())
         }
-        RollOutcome::Short { end: RollEnd::Lost(_), .. } => (Some(SHORT[2]), 0),
+        RollOutcome::Short { end: RollEnd::Lost(_), .. } => (Some(SHORT[2]), Vec::new()),
     };
     let (planning, contacts) = (planner.seconds, known.touches());
     Ok(Rolling { family, steps, motions, falls, planning, short, named, holds, contacts })
@@ -232,12 +265,10 @@ fn contains(known: &PlanarKnowledge, body: &Rolled) -> bool {
 pub fn runs(
     roller: &Roller,
     bodies: Bodies,
-    goal: f64,
-    radians: f64,
-    noise: Option<Noisy>,
+    asked: &Asked,
 ) -> Result<Vec<Rolling>, Box<dyn std::error::Error + Send + Sync>> {
     let all: Vec<_> = bodies.all().collect();
-    rows_in_threads(&all, |body| Ok(run(roller.make, *body, goal, radians, noise)?))
+    rows_in_threads(&all, |body| Ok(run(roller.make, *body, asked)?))
 }
 
 /// How runs end short.
@@ -247,14 +278,16 @@ impl Cells for Rolling {
     fn write(&self, to: &mut Vec<String>) {
         self.family.write(to);
         self.steps.write(to);
-        [self.motions, self.falls, self.named, self.contacts].write(to);
+        [self.motions, self.falls, self.contacts].write(to);
+        self.named.write(to);
         (self.planning, self.short.map(str::to_owned), self.holds).write(to);
     }
 
     fn read<'a>(from: &mut impl Iterator<Item = &'a str>) -> Option<Self> {
         let family = Family::read(from)?;
         let steps = Cells::read(from)?;
-        let [motions, falls, named, contacts] = Cells::read(from)?;
+        let [motions, falls, contacts] = Cells::read(from)?;
+        let named = Cells::read(from)?;
         let (planning, word, holds): (_, Option<String>, _) = Cells::read(from)?;
         let short = match word {
             // A word that is none of them is no row.
