@@ -21,7 +21,7 @@ const RADIANS: f64 = 40.0;
 /// The last goal of each.
 const LAST: [f64; 2] = [0.05, 0.4];
 /// The same of parallel palms in space.
-const SOLIDS: [Bodies; 2] = [Bodies { first: 87_000, each: 10 }, Bodies { first: 87_000, each: 1 }];
+const SOLIDS: [Bodies; 2] = [Bodies { first: 88_000, each: 10 }, Bodies { first: 88_000, each: 1 }];
 const LAST_OF_SOLIDS: [f64; 2] = [0.2, 0.6];
 
 fn draw(budget: Budget) -> Drawn {

@@ -35,13 +35,14 @@ const ALIKE: f64 = FRAC_1_SQRT_2;
 impl Wall {
     /// Whether a stroke along `heading` from `hold` goes on into it.
     pub(super) fn stops(&self, hold: &Hold, heading: DVec2) -> bool {
-        self.is_met(hold.normals()[0].get(), hold.onwards(heading))
+        self.is_met(hold.normals()[0].get(), hold.onwards(heading), [NEAR, ALIKE])
     }
 
-    /// Whether it is met by going along a unit vector from a normal at the upper contact, both in body axes. Squeezed from either side a body is the same.
-    pub(super) fn is_met(&self, up: DVec3, along: DVec3) -> bool {
+    /// Whether it is met by going along a unit vector from a normal at the upper contact, both in body axes, if it is felt within `near` rad and by strokes
+    /// that lean by less than the angle with the cosine `alike`. Squeezed from either side a body is the same.
+    pub(super) fn is_met(&self, up: DVec3, along: DVec3, [near, alike]: [f64; 2]) -> bool {
         let side = self.at.get().dot(up).signum();
-        (self.at.get() * side - up).length() < NEAR && self.along.dot(along) * side > ALIKE
+        (self.at.get() * side - up).length() < near && self.along.dot(along) * side > alike
     }
 }
 

@@ -39,6 +39,8 @@ const FARTHEST: f64 = 0.7;
 const LINK: f64 = 0.4;
 /// A stroke that ends nearer to its aim than this, rad, got there.
 const THERE: f64 = 0.1;
+/// Walls are felt within so many rad, and by strokes that lean by less than 25 degrees: there may be a way past them.
+const WALL: [f64; 2] = [0.08, 0.9];
 /// A way is looked at every so many rad.
 const STEP: f64 = 0.05;
 
@@ -130,6 +132,6 @@ fn is_open(walls: &[Wall], from: Direction, to: Direction) -> bool {
     (0..parts as usize).all(|k| {
         let (sin, cos) = (turn * k as f64 / parts).sin_cos();
         let (place, onwards): (DVec3, DVec3) = (a * cos + across * sin, across * cos - a * sin);
-        !walls.iter().any(|wall| wall.is_met(place, onwards))
+        !walls.iter().any(|wall| wall.is_met(place, onwards, WALL))
     })
 }

@@ -2,8 +2,8 @@ use super::{Body, SIZE, body, few_or_all, palms};
 use exploration::generators::Family;
 use exploration::planar::{Noise, PlanarKnowledge};
 use exploration::rolling::{
-    InformationRate, LargestGap, NearestGap, PalmSweep, RandomTurns, RollEnd, RollOutcome, RollPlanner,
-    RollStep, RollTask, RollingBody, Workspace, explore_rolling,
+    InformationRate, LargestGap, NearestGap, PalmSweep, Palms, RandomTurns, RollEnd, RollOutcome,
+    RollPlanner, RollStep, RollTask, RollingBody, Workspace, explore_rolling,
 };
 use exploration::{Confidence, Goal, Heading, Knowledge, Spending};
 use shape_bounds::exact_hull::planar::Direction;
@@ -106,6 +106,42 @@ fn normals_that_no_motion_was_found_for_are_named() {
         let nearest = felt().map(|n| n.angle_to(directions[0])).fold(f64::INFINITY, f64::min);
         assert!(nearest > 0.1, "{} {nearest}", planner.name());
     }
+}
+
+/// Where it is said that no motion uncovers more, a raster of all angles, six times as fine as the planners' lattice, feels nothing that is new either.
+#[test]
+fn where_nothing_is_left_to_do_a_raster_feels_nothing_new() {
+    let room = 0.1;
+    let angles = [[0.7 - room, 0.7 + room], [2.4 - room, 2.4 + room]];
+    let workspace = Workspace { angles, ..Workspace::for_size(SIZE) };
+    let task = RollTask { workspace, motions: 400, ..task(0.05) };
+    let mut said = 0;
+    for seed in 2..few_or_all(5, 14) {
+        let family = Family::ALL[seed as usize % Family::ALL.len()];
+        let (outcome, steps) = run(&mut LargestGap::new(seed), family, seed, &task);
+        if !matches!(outcome, RollOutcome::Short { end: RollEnd::NotFound { .. }, .. }) {
+            continue;
+        }
+        said += 1;
+        let felt: Vec<Direction> =
+            steps.iter().flat_map(|step| step.reading.contacts.map(|c| c.normal)).collect();
+        let mut palms = palms(family, seed);
+        let rows = (0..=4).map(|i| [0.7 - room, 0.05 * f64::from(i)]);
+        for [low, row] in rows {
+            for column in 0..=4 {
+                let reading = palms.turn([low + row, 2.4 - room + 0.05 * f64::from(column)]).unwrap();
+                for contact in reading.contacts {
+                    let nearest =
+                        felt.iter().map(|n| n.angle_to(contact.normal)).fold(f64::INFINITY, f64::min);
+                    assert!(
+                        nearest < task.spacing,
+                        "{family:?} {seed}: {nearest} rad from all that was felt"
+                    );
+                }
+            }
+        }
+    }
+    assert!(said >= 2, "{said}");
 }
 
 #[test]
