@@ -5,7 +5,7 @@ use crate::diagram::{Axis, Method, WorkPrecision};
 use crate::parallel;
 use crate::reaching::Bodies;
 use crate::reaching::statistics::quantile;
-use crate::rolling::{Asked, PLANNERS, runs};
+use crate::rolling::{Asked, LOOKAHEAD, PLANNERS, runs};
 use crate::{Budget, Diagram};
 
 pub(super) const CHART: Chart = Chart {
@@ -20,6 +20,9 @@ const BODIES: [Bodies; 2] = [Bodies { first: 86_000, each: 10 }, Bodies { first:
 const RADIANS: f64 = 40.0;
 /// The last goal of each.
 const LAST: [f64; 2] = [0.05, 0.4];
+/// Bodies over which horizons are compared, and the gap.
+const FEW: [Bodies; 2] = [Bodies { first: 86_000, each: 4 }, Bodies { first: 86_000, each: 1 }];
+const AHEAD: [f64; 2] = [0.1, 0.4];
 /// The same of parallel palms in space.
 const SOLIDS: [Bodies; 2] = [Bodies { first: 88_000, each: 10 }, Bodies { first: 88_000, each: 1 }];
 const LAST_OF_SOLIDS: [f64; 2] = [0.2, 0.6];
@@ -50,7 +53,33 @@ fn draw(budget: Budget) -> Drawn {
             .axes(Axis::linear("gap", "1"), Axis::linear("way of the palm", "mean widths"))
             .methods(strokes),
     );
-    Ok(vec![plane, space])
+    Ok(vec![plane, space, horizons(budget.of(FEW), budget.of(AHEAD))?])
+}
+
+/// What a longer look ahead and more bodies drawn cost, and bring.
+fn horizons(bodies: Bodies, goal: f64) -> Result<Diagram, Box<dyn std::error::Error + Send + Sync>> {
+    let asked = Asked { goal, radians: RADIANS, noise: None, room: None };
+    let mut methods: Vec<Method> = Vec::new();
+    for ahead in 1..=3 {
+        let mut method = Method::new(format!("{ahead} ahead"));
+        for (_, drawn, planner) in LOOKAHEAD.iter().filter(|(horizon, ..)| *horizon == ahead) {
+            let all = runs(planner, bodies, &asked)?;
+            let ways: Vec<Option<f64>> = all.iter().map(|run| run.to(goal).map(|way| way[0])).collect();
+            let motions: usize = all.iter().map(|run| run.motions).sum();
+            let choice = 1e3 * all.iter().map(|run| run.planning).sum::<f64>() / motions.max(1) as f64;
+            let way = quantile(&ways, 0.5);
+            if way.is_finite() {
+                method = method.point(format!("{drawn} drawn"), way, choice);
+            }
+        }
+        methods.push(method);
+    }
+    Ok(Diagram::from(
+        WorkPrecision::new("rolling-horizon", "Looking ahead in the plane: cost against benefit")
+            .subtitle(format!("median of some bodies of five families, exact contacts, to a gap of {:.0} %; points: bodies drawn", 100.0 * goal))
+            .axes(Axis::linear("palm motion", "rad"), Axis::log("time of a choice", "ms"))
+            .methods(methods),
+    ))
 }
 
 /// `to` tells the ways of all runs to a gap; none of those that never got there.

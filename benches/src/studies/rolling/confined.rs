@@ -19,8 +19,11 @@ const SPACING: f64 = 0.1;
 /// A run, the least gap that can be reached on its body, and how many of the directions named cannot be felt.
 type Row = (Rolling, f64, usize);
 
+/// The room, the planner, and its runs.
+type Rows = (f64, &'static str, Vec<Row>);
+
 /// Runs of each planner with each room.
-pub(super) fn rows(bodies: Bodies) -> Result<Vec<(f64, &'static str, Vec<Row>)>, Failure> {
+pub(super) fn rows(bodies: Bodies) -> Result<Vec<Rows>, Failure> {
     let all: Vec<_> = bodies.all().collect();
     let mut tables = Vec::new();
     for room in ROOMS {
@@ -39,7 +42,7 @@ pub(super) fn rows(bodies: Bodies) -> Result<Vec<(f64, &'static str, Vec<Row>)>,
 }
 
 /// What became of them.
-pub(super) fn table(all: &[(f64, &'static str, Vec<Row>)]) {
+pub(super) fn table(all: &[Rows]) {
     println!("{}\n", include_str!("confined.md").trim_end());
     println!(
         "| rad to each side | planner | out of reach | of these said | radians until then, median / 90 % | spent or lost | directions named that cannot be felt | in reach | of these proven | said to be out of reach |"

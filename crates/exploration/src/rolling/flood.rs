@@ -29,12 +29,19 @@ const SPACING: f64 = 0.3;
 const FARTHEST: f64 = 0.45;
 /// Rests of the same palms closer than this, rad, are one.
 const SAME: f64 = 0.1;
+
 /// Places at most.
 const MOST: usize = 600;
 /// Bodies on which ways are looked for; all of them if there is none on these.
 const ROUTED: usize = 4;
 /// Of all places with this share of the largest gain the nearest is gone to.
 const SHARE: f64 = 0.5;
+
+/// Whether two orientations (rad) of a body between the same palms are one rest.
+pub(super) fn is_same(phi: f64, other: f64) -> bool {
+    let turn = (phi - other).rem_euclid(TAU);
+    turn.min(TAU - turn) < SAME
+}
 
 /// All places that `body` can be brought to, nearest in motions first.
 fn flood(view: &View<'_>, body: &DrawnBody, phi: f64) -> Vec<Place> {
@@ -50,11 +57,7 @@ fn flood(view: &View<'_>, body: &DrawnBody, phi: f64) -> Vec<Place> {
                 continue;
             }
             let Some((phi, thetas)) = followed(view, body, here, *to, phi) else { continue };
-            let apart = |p: &Place| {
-                let turn = (p.phi - phi).rem_euclid(TAU);
-                turn.min(TAU - turn)
-            };
-            if !places.iter().any(|p| p.palms == *to && apart(p) < SAME) {
+            if !places.iter().any(|p| p.palms == *to && is_same(p.phi, phi)) {
                 let way = way + radians(here, *to);
                 places.push(Place { palms: *to, phi, from: Some(next), way, thetas });
             }

@@ -6,10 +6,10 @@
 use crate::planner::Reason;
 use crate::random::Source;
 use crate::rolling::belief::Belief;
+use crate::rolling::flood::is_same;
 use crate::rolling::planner::{RollProposal, SPACING, View};
 use crate::rolling::predict::Course;
 use crate::rolling::workspace::{Workspace, radians};
-use std::f64::consts::TAU;
 
 /// What was seen of the states of palms and body.
 #[derive(Clone, Debug, Default)]
@@ -54,8 +54,6 @@ struct UnderWay {
 
 /// Palms closer than this to a node, rad, are there.
 const THERE: f64 = 1e-3;
-/// Rests of the same palms closer than this, rad, are one.
-const SAME: f64 = 0.1;
 /// Nodes that differ by more, rad, are no neighbours.
 const FARTHEST: f64 = 1.5 * SPACING;
 
@@ -93,7 +91,7 @@ impl Walk {
         let (palms, phi) = (view.track.palms, view.track.phi);
         let under_way = self.under_way.take();
         let node = self.nodes.iter().position(|n| is_near(*n, palms, THERE))?;
-        let known = self.states.iter().position(|s| s.node == node && turn(s.phi, phi) < SAME);
+        let known = self.states.iter().position(|s| s.node == node && is_same(s.phi, phi));
         let here = known.unwrap_or_else(|| {
             let steps = neighbours(view.workspace, &self.nodes, node);
             self.states.push(State { node, phi, steps });
@@ -164,12 +162,6 @@ fn proposed(legs: Vec<[f64; 2]>) -> RollProposal {
 
 fn is_near(a: [f64; 2], b: [f64; 2], within: f64) -> bool {
     (a[0] - b[0]).abs() < within && (a[1] - b[1]).abs() < within
-}
-
-/// Angle between two orientations, rad.
-fn turn(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(TAU);
-    turn.min(TAU - turn)
 }
 
 /// Steps from a node: one palm turns, or both where neither can alone.
