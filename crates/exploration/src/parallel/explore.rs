@@ -67,6 +67,8 @@ pub struct ParallelStep {
     pub way: f64,
     /// The goal's quantity after it.
     pub progress: f64,
+    /// What friction that stopped the stroke there tells of the body.
+    pub wall: Option<Wall>,
 }
 
 /// Why an exploration cannot be made, or broke off.
@@ -148,7 +150,12 @@ impl Loop<'_> {
     fn step(&self, stroke: usize, proposal: Option<&ParallelProposal>, reading: FeltBetween) -> ParallelStep {
         let progress = self.known.progress(&self.task.goal);
         let why = proposal.map(|proposal| (proposal.reason, proposal.expected));
-        ParallelStep { stroke, why, reading, way: self.way, progress }
+        let stopped = proposal.filter(|_| reading.stop == Some(Stop::Shear));
+        let wall = stopped.map(|proposal| Wall {
+            at: reading.hold.normals()[0],
+            along: reading.hold.onwards(DVec2::from_angle(proposal.stroke.heading)),
+        });
+        ParallelStep { stroke, why, reading, way: self.way, progress, wall }
     }
 
     /// One stroke, until its end, a stop or the proof.
@@ -164,12 +171,10 @@ impl Loop<'_> {
         for _ in 0..parts {
             let reading = palms.roll(proposal.stroke.heading, turn)?;
             self.learn(&reading)?;
-            observe(&self.step(stroke, Some(proposal), reading), self.known);
+            let step = self.step(stroke, Some(proposal), reading);
+            self.walls.extend(step.wall);
+            observe(&step, self.known);
             let done = self.known.proves(&self.task.goal) || self.way >= self.task.way || self.spent();
-            if reading.stop == Some(Stop::Shear) {
-                let along = reading.hold.onwards(DVec2::from_angle(proposal.stroke.heading));
-                self.walls.push(Wall { at: reading.hold.normals()[0], along });
-            }
             if done || reading.stop.is_some() {
                 break;
             }

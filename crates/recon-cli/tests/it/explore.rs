@@ -206,17 +206,29 @@ fn a_palm_rolls_an_object_in_space_until_the_gap_is_proven_or_friction_ends_it()
     assert!(
         next["action"]["heading_rad"].is_number() && next["action"]["expected"]["gain"].as_f64() > Some(0.0)
     );
+    let stopped = |all: &str| {
+        format!(
+            r#"{{"orientation_xyzw": [0, 0, 0, 1], "pads_m": [[0, 0], [0, 0]], "width_m": 1, "friction": 1, "stroke": 3, "stopped_by_friction": {all}}}"#
+        )
+    };
     for (state, says) in [
         ("{}", "orientation_xyzw"),
         ("none", "expected"),
         (r#"{"orientation_xyzw": [0, 0, 0, 1]}"#, "pads_m"),
+        (&stopped("7"), "`stopped_by_friction` is no list"),
+        (&stopped(r#"[{"up_normal": [0, 0, 1]}]"#), "`stopped_by_friction` is not all numbers"),
+        (&stopped(r#"[{"up_normal": [0, 0, 0], "along": [1, 0, 0]}]"#), "no length"),
     ] {
         scratch.write("out/state.json", state);
         let run = scratch.run(&["next", "out", "--until", "gap=0.2"]);
         assert!(run.code == Some(3) && run.stderr.contains(says), "{state}: {}", run.stderr);
     }
-    let short = json(&scratch, &rolling(&["--until", "gap=0.1", "--friction", "0.05", "--json"]), 4);
+    let end = ["--until", "gap=0.1", "--friction", "0.05", "-o", "short", "--json"];
+    let short = json(&scratch, &rolling(&end), 4);
     assert!(short["warnings"][0].as_str().unwrap().contains("more friction"), "{short}");
+    // Whoever goes on from there is not sent the same ways again.
+    let next = json(&scratch, &["next", "short"], 4);
+    assert!(next["why_none"].as_str().unwrap().contains("no stroke uncovers what is left"), "{next}");
     let noise = ["--until", "gap=0.2", "--contact-noise", "1e-4"];
     for (arguments, says) in [
         (rolling(&noise), "half of the noise"),

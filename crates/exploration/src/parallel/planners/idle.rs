@@ -15,6 +15,8 @@ pub(super) struct Idle {
 
 /// The first strokes are crosswise and so long, rad: then normals span all directions.
 const FIRST: f64 = 0.9;
+/// There are so many of them: to all four sides.
+const CROSSWISE: usize = 4;
 /// Strokes without a contact after which bodies drawn are no longer asked.
 const WALKED: usize = 3;
 
@@ -36,7 +38,11 @@ impl Idle {
             let stroke = Stroke { heading: view.stroke as f64 * FRAC_PI_2, turn: FIRST };
             ParallelProposal { stroke, expected: None, reason: Reason::Start }
         };
-        Ok(bodies.is_empty().then(first))
+        match bodies.is_empty() {
+            true if view.stroke < CROSSWISE => Ok(Some(first())),
+            true => self.walked(view).map(Some),
+            false => Ok(None),
+        }
     }
 
     /// A stroke that was not made yet.

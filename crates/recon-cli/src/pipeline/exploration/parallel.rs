@@ -239,7 +239,8 @@ pub(crate) fn stroked(
     if let Some(made) = strokes.made.last() {
         let (hold, stroke) = (made.last.reading.hold, made.last.stroke);
         let noise = strokes.noise();
-        files.push(state_file(&Placed { hold, workspace, stroke, noise }));
+        let walls = strokes.made.iter().filter_map(|made| made.last.wall).collect();
+        files.push(state_file(&Placed { hold, workspace, stroke, noise, walls }));
     }
     files.extend(drawn.files()?);
     let mut report = Vec::new();
@@ -355,7 +356,8 @@ pub(crate) fn next_stroke(
     let task = ParallelTask::new(goal, placed.workspace);
     let (workspace, goal, spacing) = (&task.workspace, &task.goal, task.spacing);
     let (hold, stroke) = (&placed.hold, placed.stroke);
-    let view = ParallelView { known: &known, hold, workspace, goal, walls: &[], spacing, stroke, idle: 0 };
+    let walls = &placed.walls;
+    let view = ParallelView { known: &known, hold, workspace, goal, walls, spacing, stroke, idle: 0 };
     match planner(settings.planner, settings.seed)?.next(&view) {
         Ok(ParallelProposal { stroke, expected, reason }) => {
             let mut action =

@@ -3,13 +3,14 @@
 use super::state::STATE;
 use crate::error::CliError;
 use crate::pipeline::folder::Extra;
-use glam::{DQuat, DVec2};
-use recon::exploration::parallel::{Hold, ParallelWorkspace};
+use glam::{DQuat, DVec2, DVec3};
+use recon::contact_kinematics::Direction;
+use recon::exploration::parallel::{Hold, ParallelWorkspace, Wall};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// Where the object is, and what palms can do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Placed {
     pub(crate) hold: Hold,
     pub(crate) workspace: ParallelWorkspace,
@@ -18,9 +19,12 @@ pub(crate) struct Placed {
     /// Standard deviations of a contact per axis (m) and of its normal about each tangent axis (rad), in axes of the object and no less than those of any; none of exact
     /// contacts.
     pub(crate) noise: Option<[f64; 2]>,
+    /// Where friction stopped strokes.
+    pub(crate) walls: Vec<Wall>,
 }
 
 const NOISE: [&str; 2] = ["contact_off_m", "normal_off_rad"];
+const STOPPED: &str = "stopped_by_friction";
 
 /// Quaternions shorter than this are none.
 const NO_TURN: f64 = 1e-6;
@@ -57,19 +61,44 @@ impl Placed {
         let stroke =
             state["stroke"].as_u64().ok_or_else(|| wrong("`stroke` is no number of strokes".to_owned()))?;
         let noise = point?.zip(normal?).map(|(point, normal)| [point, normal]);
-        Ok(Self { hold, workspace, stroke: stroke as usize, noise })
+        let walls = walls(&state, number, wrong)?;
+        Ok(Self { hold, workspace, stroke: stroke as usize, noise, walls })
     }
+}
+
+/// Where friction stopped strokes; none where nothing is said of it.
+fn walls(
+    state: &Value,
+    number: impl Fn(&str, &Value) -> Result<f64, CliError>,
+    wrong: impl Fn(String) -> CliError,
+) -> Result<Vec<Wall>, CliError> {
+    let vector = |value: &Value| {
+        let [x, y, z] = [0, 1, 2].map(|i| number(STOPPED, &value[i]));
+        Direction::new(DVec3::new(x?, y?, z?))
+            .map_err(|_| wrong(format!("`{STOPPED}` has a vector of no length")))
+    };
+    let wall = |stopped: &Value| {
+        let (at, along) = (vector(&stopped["up_normal"])?, vector(&stopped["along"])?);
+        Ok(Wall { at, along: along.get() })
+    };
+    let Some(stopped) = state.get(STOPPED) else { return Ok(Vec::new()) };
+    let all = stopped.as_array().ok_or_else(|| wrong(format!("`{STOPPED}` is no list")))?;
+    all.iter().map(wall).collect()
 }
 
 /// As a file.
 pub(super) fn state_file(placed: &Placed) -> Extra {
-    let Placed { hold, workspace, stroke, noise } = placed;
+    let Placed { hold, workspace, stroke, noise, walls } = placed;
+    let stopped = walls
+        .iter()
+        .map(|wall| json!({ "up_normal": wall.at.get().to_array(), "along": wall.along.to_array() }));
     let mut state = json!({
         "orientation_xyzw": hold.R_WO.to_array(),
         "pads_m": hold.pads.map(|pad| pad.to_array()),
         "friction": workspace.friction,
         "width_m": workspace.size,
         "stroke": stroke,
+        STOPPED: stopped.collect::<Vec<_>>(),
     });
     for (key, value) in NOISE.iter().zip(noise.iter().flatten()) {
         state[*key] = (*value).into();
