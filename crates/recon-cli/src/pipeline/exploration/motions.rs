@@ -1,6 +1,6 @@
 //! What is told of palms that turn, motion by motion.
 
-use super::page::{in_turn, outline_panel, quantity};
+use super::page::{in_turn, measured, outline_panel, quantity};
 use super::plane::{InPlane, lower, upper};
 use super::rolling::Ended;
 use super::side::Side;
@@ -127,7 +127,6 @@ impl Motions {
     pub(super) fn page(self, end: &Ended<'_>, known: &PlanarKnowledge) -> ExplorationPage {
         let (certificate, asked) = (end.certificate, end.goal.value());
         let level = if end.reached { Level::Good } else { Level::Caution };
-        let size = |v: f64| if v.is_finite() { brief_to(4, v) } else { "unbounded".to_owned() };
         let measures = known.measures();
         let falls: usize = self.motions.iter().map(|motion| motion.falls).sum();
         // Of what is estimated contacts are told by the bounds alone, and falls are motions like others.
@@ -137,10 +136,10 @@ impl Motions {
             ("Palms turned", brief_to(3, self.radians), "rad"),
             ("Time", brief_to(3, self.seconds), "s"),
             ("Contacts taken", certificate.touches.to_string(), ""),
-            ("Proven", size(certificate.proven), ""),
+            measured("Proven", certificate.proven, ""),
             ("Asked for", brief_to(4, asked), ""),
-            ("Lower bound", size(measures.lower), InPlane::UNIT),
-            ("Upper bound", size(measures.upper), InPlane::UNIT),
+            measured("Lower bound", measures.lower, InPlane::UNIT),
+            measured("Upper bound", measures.upper, InPlane::UNIT),
         ];
         if felt {
             facts.insert(3, ("Falls", falls.to_string(), ""));

@@ -94,21 +94,29 @@ pub(super) fn quantity<H: Heading>(goal: &Goal<H>) -> &'static str {
     }
 }
 
+/// A key figure that may have no end.
+pub(super) fn measured(
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+) -> (&'static str, String, &'static str) {
+    if value.is_finite() { (name, brief_to(4, value), unit) } else { (name, "unbounded".to_owned(), "") }
+}
+
 fn facts<S: Side>(
     known: &S::Known,
     ended: &Outcome<<S::Known as Knowledge>::Heading>,
     way: f64,
 ) -> Vec<(&'static str, String, &'static str)> {
     let certificate = ended.certificate();
-    let size = |v: f64| if v.is_finite() { brief_to(4, v) } else { "unbounded".to_owned() };
     let measures = known.measures();
     let mut facts = vec![
         ("Touches", certificate.touches.to_string(), ""),
-        ("Proven", size(certificate.proven), ""),
+        measured("Proven", certificate.proven, ""),
         ("Asked for", brief_to(4, certificate.goal.value()), ""),
-        ("Lower bound", size(measures.lower), S::UNIT),
-        ("Upper bound", size(measures.upper), S::UNIT),
-        ("Largest distance", size(certificate.hausdorff), "m"),
+        measured("Lower bound", measures.lower, S::UNIT),
+        measured("Upper bound", measures.upper, S::UNIT),
+        measured("Largest distance", certificate.hausdorff, "m"),
         ("Way", brief_to(3, way), "rad"),
     ];
     if let Goal::Gap(gap) = certificate.goal {

@@ -1,6 +1,6 @@
 //! Explorations by two parallel palms with friction: the object between them rolls as the upper one moves.
 
-use super::page::{in_turn, outline_panel, quantity};
+use super::page::{in_turn, measured, quantity};
 use super::parallel_state::{Placed, state_file};
 use super::settings::{Settings, goal_of, words_of};
 use super::side::Side;
@@ -179,12 +179,10 @@ impl Made {
     }
 }
 
-/// The bounds with the contacts, seen along three axes.
+/// The bounds with the contacts, seen along three axes; nothing while they are not closed.
 fn pictures(known: &SpaceKnowledge) -> Vec<FigurePanel> {
-    if known.bounds().is_some_and(|bounds| bounds.upper().bounded().is_some()) {
-        return InSpace::pictures(known, None);
-    }
-    vec![outline_panel("Nothing closed yet", ["x", "y"], [Vec::new(), Vec::new()], Vec::new(), None)]
+    let closed = known.bounds().is_some_and(|bounds| bounds.upper().bounded().is_some());
+    if closed { InSpace::pictures(known, None) } else { Vec::new() }
 }
 
 /// Moves the upper palm until the goal is proven, and tells `watch` of each reading. Contacts are in the frame of the object.
@@ -259,7 +257,6 @@ fn page(
 ) -> ExplorationPage {
     let certificate = ended.certificate();
     let level = if ended.is_reached() { Level::Good } else { Level::Caution };
-    let size = |v: f64| if v.is_finite() { brief_to(4, v) } else { "unbounded".to_owned() };
     let measures = known.measures();
     let stopped = strokes.made.iter().filter(|made| made.last.reading.stop.is_some()).count();
     let mut facts = vec![
@@ -267,10 +264,10 @@ fn page(
         ("Way of the palm", brief_to(3, strokes.way()), "m"),
         ("Stopped", stopped.to_string(), "strokes"),
         ("Contacts taken", certificate.touches.to_string(), ""),
-        ("Proven", size(certificate.proven), ""),
+        measured("Proven", certificate.proven, ""),
         ("Asked for", brief_to(4, certificate.goal.value()), ""),
-        ("Lower bound", size(measures.lower), InSpace::UNIT),
-        ("Upper bound", size(measures.upper), InSpace::UNIT),
+        measured("Lower bound", measures.lower, InSpace::UNIT),
+        measured("Upper bound", measures.upper, InSpace::UNIT),
     ];
     if let Some((level, _)) = certificate.confidence {
         facts.push(("Confidence", brief_to(4, 100.0 * level), "%"));
