@@ -246,6 +246,25 @@ fn estimate() -> EstimateData {
     }
 }
 
+/// Where an object is is not known from a motion that is not relied on, and neither it nor its centre of mass is drawn anywhere.
+#[test]
+fn the_page_of_a_motion_that_is_not_relied_on_draws_no_object() {
+    let mut data = estimate();
+    let drawn = |data: &EstimateData| {
+        let mut bytes = Vec::new();
+        write_estimate_report(data, &mut bytes).unwrap();
+        let page = String::from_utf8(bytes).unwrap();
+        ["centre", "object", "force"].map(|class| page.matches(&format!("class=\"{class}\"")).count())
+    };
+    let [centres, objects, forces] = drawn(&data);
+    assert!(centres > 0 && objects > 0 && forces > 0, "{centres} {objects} {forces}");
+    data.estimate.relied_on.fill(false);
+    // Far away: the picture is about the contacts.
+    data.estimate.states.iter_mut().for_each(|state| state.p_WCm += DVec3::splat(1e3));
+    data.curves.iter_mut().flatten().for_each(|contact| *contact = None);
+    assert_eq!(drawn(&data), [0, 0, forces]);
+}
+
 #[test]
 fn the_page_of_an_estimate_shows_palms_object_modes_and_doubts() {
     let mut data = estimate();
