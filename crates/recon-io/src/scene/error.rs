@@ -36,6 +36,9 @@ pub enum SceneErrorKind {
     /// Not TOML, or a key that is unknown, missing or of the wrong type; the message shows the place.
     #[error("is not a scene\n{}", in_words(.0))]
     Toml(#[from] toml::de::Error),
+    /// None of space, but one of the plane that does not say so.
+    #[error("is not a scene of space\n{}\nit is one of the plane: write `plane = true` at its beginning", in_words(.0))]
+    PlaneNotSaid(#[source] toml::de::Error),
     /// A number outside of what the quantity can be.
     #[error("`{key}` is {value}; it must be {must}")]
     Value {

@@ -221,7 +221,13 @@ impl Scene {
         if toml::from_str::<planar::Whether>(text)?.plane {
             return Err(SceneErrorKind::InPlane);
         }
-        build::scene(toml::from_str(text)?, folder)
+        let file = toml::from_str(text).map_err(|error| {
+            match PlanarScene::parse_known(&format!("plane = true\n{text}")) {
+                Ok(_) => SceneErrorKind::PlaneNotSaid(error),
+                Err(_) => SceneErrorKind::Toml(error),
+            }
+        })?;
+        build::scene(file, folder)
     }
 
     /// Mass and inertia, where both are known.

@@ -144,3 +144,19 @@ fn palms_that_cannot_hold_an_object_are_named() {
     let two = with("  { azimuth_deg = 270, slope_deg = 60 },\n", "");
     assert!(matches!(two, Err(Kind::PalmCount { found: 2 })));
 }
+
+/// Who forgot to say so is told, and a mistake in a scene of space is not blamed on that.
+#[test]
+fn a_scene_of_the_plane_that_does_not_say_so_is_told_from_a_mistake() {
+    let known = "gravity = 9.81\n[object]\nmass = 1.0\ninertia = 0.02\n";
+    let told = Scene::parse(known).unwrap_err().to_string();
+    assert!(told.contains("write `plane = true`"), "{told}");
+    assert!(matches!(Scene::parse(&format!("plane = true\n{known}")), Err(Kind::InPlane)));
+    for mistake in [
+        "gravit = 9.81",
+        "gravity = 9.81\n[object]\nmass = \"1\"",
+        "gravity = 9.81\n[object]\nprincipal_moments = [1, 2]",
+    ] {
+        assert!(matches!(Scene::parse(mistake), Err(Kind::Toml(_))), "{mistake}");
+    }
+}
