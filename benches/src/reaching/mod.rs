@@ -4,6 +4,7 @@ pub mod hindsight;
 pub mod plane;
 pub mod space;
 pub mod statistics;
+pub mod told;
 
 use crate::rows::Cells;
 use exploration::generators::Family;

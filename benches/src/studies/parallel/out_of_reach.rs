@@ -5,7 +5,7 @@ use recon::contact_kinematics::Direction;
 use recon_benches::parallel::reachable::Reachable;
 use recon_benches::parallel::{PLANNERS, Rolling, Setting, runs};
 use recon_benches::reaching::Bodies;
-use recon_benches::reaching::statistics::median_and_tail;
+use recon_benches::reaching::told::{Told, cells, heads};
 
 const FRICTIONS: [f64; 4] = [0.2, 0.4, 0.8, 1.2];
 /// "Gap per way, 1 ahead" and "largest gap".
@@ -29,42 +29,26 @@ pub(super) fn rows(bodies: Bodies) -> Result<Vec<Rows>, Failure> {
     Ok(all)
 }
 
-/// A run, the least gap that can be reached on its body, and how many of the directions named cannot be felt.
-type Judged<'a> = (&'a Rolling, f64, usize);
-
 /// What became of them.
 pub(super) fn table(bodies: Bodies, all: &[Rows]) {
     println!(
         "## Where no stroke can uncover more\n\nThe same bodies to 20 %. What can be felt at all was found with the true body: all normals of a lattice of 0.055 rad that friction holds at and that a way through such normals leads to, between pads without an end. \
          Where all of these contacts together leave a gap above 20 % no stroke reaches the goal. Bodies that are held nowhere are left out.\n"
     );
-    println!(
-        "| friction | planner | out of reach | of these said | widths of way until then, median / 90 % | directions named that cannot be felt | in reach | of these proven | said to be out of reach |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("| friction | planner | {} |", heads("widths of way"));
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     let bodies: Vec<_> = bodies.all().collect();
     for (friction, name, runs) in all {
-        let judged = bodies.iter().zip(runs).filter_map(|(body, run)| {
+        let told = bodies.iter().zip(runs).filter_map(|(body, run)| {
             let direction = |v: &[f64; 3]| Direction::new((*v).into()).ok();
             let can = Reachable::of(*body, direction(&run.up?)?, SHARE * friction);
-            let beyond = run.named.iter().filter_map(direction).filter(|d| can.distance(*d) > SPACING);
-            Some((run, can.gap, beyond.count()))
+            let beyond =
+                run.named.iter().filter_map(direction).filter(|d| can.distance(*d) > SPACING).count();
+            let way = run.steps.last().map(|step| step[0]);
+            Some(Told { short: run.short, way, least: can.gap, named: [run.named.len(), beyond] })
         });
-        let (out, within): (Vec<Judged>, Vec<Judged>) = judged.partition(|(_, gap, _)| *gap > SETTING.goal);
-        let said = |rows: &[Judged]| rows.iter().filter(|row| row.0.short == Some("not found")).count();
-        let ended = out.iter().filter(|row| row.0.short == Some("not found"));
-        let ways: Vec<_> = ended.map(|row| row.0.steps.last().map(|step| step[0])).collect();
-        let (beyond, named) =
-            out.iter().fold((0, 0), |(beyond, named), row| (beyond + row.2, named + row.0.named.len()));
-        println!(
-            "| {friction} | {name} | {} | {} | {} | {beyond} of {named} | {} | {} | {} |",
-            out.len(),
-            said(&out),
-            if ways.is_empty() { "-".to_owned() } else { median_and_tail(&ways, 1) },
-            within.len(),
-            within.iter().filter(|row| row.0.short.is_none()).count(),
-            said(&within),
-        );
+        let told: Vec<Told> = told.collect();
+        println!("| {friction} | {name} | {} |", cells(&told, SETTING.goal, "not found"));
     }
     println!();
 }

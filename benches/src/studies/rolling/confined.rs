@@ -2,7 +2,7 @@
 
 use super::{Failure, RADIANS};
 use recon_benches::reaching::Bodies;
-use recon_benches::reaching::statistics::median_and_tail;
+use recon_benches::reaching::told::{Told, cells, heads};
 use recon_benches::rolling::reachable::Reachable;
 use recon_benches::rolling::{Asked, PLANNERS, Roller, Rolling, run};
 use recon_benches::rows::rows_in_threads;
@@ -44,29 +44,13 @@ pub(super) fn rows(bodies: Bodies) -> Result<Vec<Rows>, Failure> {
 /// What became of them.
 pub(super) fn table(all: &[Rows]) {
     println!("{}\n", include_str!("confined.md").trim_end());
-    println!(
-        "| rad to each side | planner | out of reach | of these said | radians until then, median / 90 % | spent or lost | directions named that cannot be felt | in reach | of these proven | said to be out of reach |"
-    );
+    println!("| rad to each side | planner | {} |", heads("radians"));
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for (room, name, rows) in all {
-        let (out, within): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|(_, gap, _)| *gap > GOAL);
-        let said = |rows: &[&Row]| rows.iter().filter(|(run, ..)| run.short == Some("not found")).count();
-        let ways: Vec<Option<f64>> = out
-            .iter()
-            .filter(|(run, ..)| run.short == Some("not found"))
-            .map(|(run, ..)| run.steps.last().map(|step| step[0]))
-            .collect();
-        let (beyond, named) =
-            out.iter().fold((0, 0), |(beyond, named), row| (beyond + row.2, named + row.0.named.len()));
-        println!(
-            "| {room} | {name} | {} | {} | {} | {} | {beyond} of {named} | {} | {} | {} |",
-            out.len(),
-            said(&out),
-            if ways.is_empty() { "-".to_owned() } else { median_and_tail(&ways, 1) },
-            out.iter().filter(|(run, ..)| run.short.is_some_and(|why| why != "not found")).count(),
-            within.len(),
-            within.iter().filter(|(run, ..)| run.short.is_none()).count(),
-            said(&within),
-        );
+        let told = rows.iter().map(|(run, least, beyond)| {
+            let (way, named) = (run.steps.last().map(|step| step[0]), [run.named.len(), *beyond]);
+            Told { short: run.short, way, least: *least, named }
+        });
+        println!("| {room} | {name} | {} |", cells(&told.collect::<Vec<_>>(), GOAL, "not found"));
     }
 }
