@@ -5,7 +5,7 @@ use crate::diagram::{Axis, Method, WorkPrecision};
 use crate::parallel;
 use crate::reaching::Bodies;
 use crate::reaching::statistics::quantile;
-use crate::rolling::{Asked, LOOKAHEAD, PLANNERS, runs};
+use crate::rolling::{Asked, LOOKAHEAD, PLANNERS, choice_ms, runs};
 use crate::{Budget, Diagram};
 
 pub(super) const CHART: Chart = Chart {
@@ -65,11 +65,9 @@ fn horizons(bodies: Bodies, goal: f64) -> Result<Diagram, Box<dyn std::error::Er
         for (_, drawn, planner) in LOOKAHEAD.iter().filter(|(horizon, ..)| *horizon == ahead) {
             let all = runs(planner, bodies, &asked)?;
             let ways: Vec<Option<f64>> = all.iter().map(|run| run.to(goal).map(|way| way[0])).collect();
-            let motions: usize = all.iter().map(|run| run.motions).sum();
-            let choice = 1e3 * all.iter().map(|run| run.planning).sum::<f64>() / motions.max(1) as f64;
             let way = quantile(&ways, 0.5);
             if way.is_finite() {
-                method = method.point(format!("{drawn} drawn"), way, choice);
+                method = method.point(format!("{drawn} drawn"), way, choice_ms(&all));
             }
         }
         methods.push(method);

@@ -141,6 +141,13 @@ impl Rolling {
     }
 }
 
+/// Time of a choice, ms: mean over the motions of some runs.
+#[must_use]
+pub fn choice_ms(runs: &[Rolling]) -> f64 {
+    let motions: usize = runs.iter().map(|run| run.motions).sum();
+    1e3 * runs.iter().map(|run| run.planning).sum::<f64>() / motions.max(1) as f64
+}
+
 /// Measures the time of another planner.
 pub(crate) struct Timed {
     pub(crate) inner: Box<dyn RollPlanner>,

@@ -50,12 +50,14 @@ impl Reachable {
     /// Angle from a direction (rad) to the nearest that can be felt.
     #[must_use]
     pub fn distance(&self, theta: f64) -> f64 {
-        let apart = |felt: &f64| {
-            let turn = (felt - theta).rem_euclid(TAU);
-            turn.min(TAU - turn)
-        };
-        self.directions.iter().map(apart).fold(f64::INFINITY, f64::min)
+        self.directions.iter().map(|felt| between(*felt, theta)).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Angle between two directions, rad.
+fn between(a: f64, b: f64) -> f64 {
+    let turn = (a - b).rem_euclid(TAU);
+    turn.min(TAU - turn)
 }
 
 /// Directions of all contacts, rad, in one turn.
@@ -75,11 +77,7 @@ fn flood(body: &Rolled, workspace: &Workspace, phi: f64) -> Vec<f64> {
         let Some((phi, thetas)) = rest(node, from) else { return };
         let phi = phi.rem_euclid(TAU);
         let there = seen.entry(node).or_default();
-        let known = there.iter().any(|p| {
-            let turn = (p - phi).rem_euclid(TAU);
-            turn.min(TAU - turn) < SAME
-        });
-        if !known {
+        if there.iter().all(|p| between(*p, phi) >= SAME) {
             there.push(phi);
             felt.extend(thetas.map(|theta| theta.rem_euclid(TAU)));
             open.push_back((node, phi));

@@ -48,7 +48,7 @@ pub enum Shortfall {
     },
     /// No touch narrows the bounds any more: noise or rounding is left.
     NothingToGain,
-    /// No motion of palms uncovers what is left: all that they can do was gone through, in steps of 0.3 rad.
+    /// No motion of palms uncovers what is left: all that they can do was gone through, step by step.
     NotFound {
         /// Outward normals where most is left, as coordinates, the worst first.
         directions: Vec<Vec<f64>>,

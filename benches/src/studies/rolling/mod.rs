@@ -6,7 +6,7 @@ mod confined;
 
 use recon_benches::reaching::Bodies;
 use recon_benches::reaching::statistics::{median_and_tail, quantile, ratio_of_medians};
-use recon_benches::rolling::{Asked, LOOKAHEAD, Noisy, PLANNERS, Rolling, runs};
+use recon_benches::rolling::{Asked, LOOKAHEAD, Noisy, PLANNERS, Rolling, choice_ms, runs};
 use recon_benches::rows::is_part;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -91,7 +91,7 @@ fn lookahead(all: &[([usize; 2], Vec<Rolling>)]) {
             ways.join(" | "),
             count(runs, |r| r.short.is_none()),
             motions as f64 / runs.len() as f64,
-            1e3 * runs.iter().map(|r| r.planning).sum::<f64>() / motions.max(1) as f64
+            choice_ms(runs)
         );
     }
     println!();
@@ -142,7 +142,7 @@ fn ends(all: &[Compared]) {
             short("lost"),
             mean(runs.iter().map(|r| r.falls).sum()),
             mean(motions),
-            1e3 * runs.iter().map(|r| r.planning).sum::<f64>() / motions.max(1) as f64,
+            choice_ms(runs),
             count(runs, |r| r.holds),
             runs.len()
         );

@@ -49,8 +49,8 @@ pub struct ParallelProposal {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ParallelPlanError {
-    /// No stroke uncovers what is left: on no body drawn, and all that the palms can do was gone through, in steps of 0.3 rad, up to where friction or a pad ended it.
-    #[error("no stroke uncovers what is left, at {} directions of the body: all that the palms can do was gone through in steps of 0.3 rad", directions.len())]
+    /// No stroke uncovers what is left: on no body drawn, and all that the palms can do was gone through, in steps of 0.2 rad, up to where friction or a pad ended it.
+    #[error("no stroke uncovers what is left, at {} directions of the body: all that the palms can do was gone through in steps of 0.2 rad", directions.len())]
     NotFound {
         /// Outward normals in body axes where the bounds are farthest apart, the farthest first.
         directions: Vec<Direction>,

@@ -5,13 +5,13 @@ use super::balance::{Balance, settle_roughly};
 use super::belief::Belief;
 use super::drawn::{DrawnBody, cell_at};
 use super::gain::removed;
+use super::metric::between;
 use super::palms::PREDICTED;
 use super::planner::{RollProposal, View};
 use super::predict::Course;
 use super::workspace::{along, pair, radians};
 use crate::planner::Reason;
 use shape_bounds::exact_hull::planar::Direction;
-use std::f64::consts::TAU;
 
 /// A rest that can be got to.
 struct Place {
@@ -39,8 +39,7 @@ const SHARE: f64 = 0.5;
 
 /// Whether two orientations (rad) of a body between the same palms are one rest.
 pub(super) fn is_same(phi: f64, other: f64) -> bool {
-    let turn = (phi - other).rem_euclid(TAU);
-    turn.min(TAU - turn) < SAME
+    between(phi, other) < SAME
 }
 
 /// All places that `body` can be brought to, nearest in motions first.

@@ -66,7 +66,7 @@ fn combined(
 }
 
 /// Angle between two directions in rad, in [0, pi].
-fn between(a: f64, b: f64) -> f64 {
+pub(super) fn between(a: f64, b: f64) -> f64 {
     let turn = (a - b).rem_euclid(TAU);
     turn.min(TAU - turn)
 }

@@ -29,7 +29,7 @@ struct Aim {
     walls: usize,
 }
 
-/// Nodes: some 0.3 rad apart on half of the sphere.
+/// Nodes: some 0.2 rad apart on half of the sphere.
 const NODES: usize = 160;
 /// A place nearer to a node than this, rad, was there.
 const SEEN: f64 = 0.2;

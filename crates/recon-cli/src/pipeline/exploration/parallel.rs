@@ -304,7 +304,7 @@ fn why_short(shortfall: &Shortfall) -> String {
                 format!(", most of it along ({}) on the object", n.join(", "))
             });
             format!(
-                "no stroke uncovers what is left{first}: all that the palms can do was gone through, in steps of 0.3 rad, and more friction lets more be reached"
+                "no stroke uncovers what is left{first}: all that the palms can do was gone through, in steps of 0.2 rad, and more friction lets more be reached"
             )
         }
         Shortfall::Unreachable { .. } | Shortfall::NothingToGain => {
