@@ -92,6 +92,33 @@ pub(super) fn shifted(problem: &Problem, from: &Unknowns, body: Body, shift: DVe
     Unknowns { motions, body }
 }
 
+/// A motion whose centre of mass is another one by `shift` all along, with the same velocity, and the angular velocity that contacts leave it: in the plane.
+pub(super) fn displaced(problem: &Problem, from: &Unknowns, shift: DVec3) -> Unknowns {
+    let times = &problem.record.times;
+    let mut motions: Vec<Motion> = Vec::with_capacity(from.motions.len());
+    let mut last: Option<(f64, DVec3)> = None;
+    for (motion, &k) in from.motions.iter().zip(&problem.nodes) {
+        let p = motion.p + shift;
+        let (mut right, mut normal) = (0.0, RIDGE * problem.units.length * problem.units.length);
+        for contact in problem.record.contacts[k].iter().filter(|contact| contact.mode != ContactMode::Off) {
+            let lever = (contact.c - p).cross(contact.n).y;
+            normal += lever * lever;
+            right += lever * contact.n.dot(contact.u - motion.v);
+        }
+        let w = DVec3::Y * (right / normal);
+        let q = match (last, motions.last()) {
+            (Some((t, before)), Some(previous)) => {
+                (exponential(0.5 * (w + before) * (times[k] - t)) * previous.q).normalize()
+            }
+            _ => motion.q,
+        };
+        last = Some((times[k], w));
+        let L = from.body.inertia_along(DMat3::from_quat(q)) * w;
+        motions.push(Motion { p, v: motion.v, L, q });
+    }
+    Unknowns { motions, body: from.body }
+}
+
 /// A motion at sample `k` with another angular velocity, and the velocity that contacts leave it.
 fn spinning(problem: &Problem, k: usize, body: &Body, motion: Motion, w: DVec3) -> Motion {
     let contacts: Vec<_> = problem.record.contacts[k].iter().collect();

@@ -23,6 +23,9 @@ use object_dynamics::MassProperties;
 /// seen to lie 0.2 apart and more.
 const RATES: [f64; 3] = [0.0, 1.0, -1.0];
 const SHIFTED: [f64; 3] = [0.2, 0.3, 0.7];
+/// How much higher the centre of mass is in other starts in the plane where noise does not explain a motion, natural lengths: of a body that hardly turns forces tell
+/// the line that it is on, and its height last.
+const HEIGHTS: [f64; 4] = [0.5, -0.5, 1.0, -1.0];
 /// Of a short log that tells little of the body: spins that round bodies are flung with, up to so many natural ones. One in five leads to the most
 /// probable motion, or one about as probable, and of thirteen such logs none of the others did in six.
 const FLUNG: u32 = 24;
@@ -88,6 +91,9 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         let covariances = solved.covariances(problem)?;
         let mut starts = starts(problem, &solved.unknowns, body);
         let found = solved.unknowns.clone();
+        if problem.planar && !solved.explained() {
+            starts.extend(displaced(problem, &found));
+        }
         if !problem.planar && all.len() == 1 && is_short(problem) && is_unsure(problem, solved) {
             starts.extend(flung(problem));
         }
@@ -247,6 +253,12 @@ fn starts(problem: &Problem, found: &Unknowns, body: Body) -> Vec<Unknowns> {
     let along = |shift: f64| DVec3::AXES.map(|axis| [axis * shift, axis * -shift]);
     let shifts = SHIFTED.into_iter().flat_map(along).flatten();
     shifts.map(|shift| cold::shifted(problem, found, body, shift * rate)).collect()
+}
+
+/// The motion in the plane of a body whose centre of mass is higher or lower.
+fn displaced(problem: &Problem, found: &Unknowns) -> [Unknowns; HEIGHTS.len()] {
+    let up = -problem.gravity.normalize_or_zero() * problem.units.length;
+    HEIGHTS.map(|height| cold::displaced(problem, found, up * height))
 }
 
 /// Whether a log of an unknown body is one over which starts that differ much lead to motions that leave little.

@@ -58,7 +58,7 @@ fn a_wrong_constant_is_named_with_its_value() {
     let gain = forces(&told, |i, k, f| if i == 1 { f[k] / 1.05 } else { f[k] });
     let cases = [
         (Constant::ForceGain { palm: 2 }, 0.05, gain),
-        (Constant::ContactOffset { palm: 3, axis: 0 }, 5e-4, shifted(&told, 2, -5e-4)),
+        (Constant::ContactOffset { palm: 3, axis: 0 }, 6e-4, shifted(&told, 2, -6e-4)),
     ];
     for (fault, value, log) in cases {
         let found = tested(&log, noise);
