@@ -184,6 +184,6 @@ fn run(
         suspects: true,
         ..PlaneOptions::new(noise, GRAVITY, vec![None; 2])
     };
-    tally.run(&log, &options, of.length, None)?;
+    tally.run(&log, &options, of.length, |_| 0.0)?;
     Ok(())
 }

@@ -3,7 +3,6 @@
 use crate::rows::RowsError;
 use cpu_time::ThreadTime;
 use recon::object_dynamics::planar::{ContactLog, PlanarTruth};
-use recon::observer::faults::Constant;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 
 /// Deviations beyond which an error that nothing warned of is silent.
@@ -29,13 +28,13 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// Estimates the motion of a body of the size `length` (m), and counts what comes of it; `wrong` is what is wrong of the sensors.
+    /// Estimates the motion of a body of the size `length` (m), and counts what comes of it; `told` is what is wrong in the deviation that is stated of it.
     pub(crate) fn run(
         &mut self,
         log: &ContactLog,
         options: &PlaneOptions,
         length: f64,
-        wrong: Option<(Constant, f64)>,
+        told: impl Fn(&PlaneEstimate) -> f64,
     ) -> Result<(), RowsError> {
         let run = crate::rows::row(|| -> Result<Run, RowsError> {
             let clock = ThreadTime::now();
@@ -43,7 +42,7 @@ impl Tally {
             let microseconds = 1e6 * clock.elapsed().as_secs_f64();
             let reliable = |made: PlaneEstimate| {
                 let truth = log.truth().unwrap_or_default();
-                let told = told(&made, wrong);
+                let told = told(&made);
                 let errors = errors(&made, truth, length);
                 made.reliability.is_reliable().then(|| [errors[0], errors[1], errors[2], errors[3], told])
             };
@@ -84,14 +83,6 @@ impl Tally {
             self.microseconds / self.samples.max(1.0)
         )
     }
-}
-
-/// What is wrong of the sensors in the deviation that is stated of it; zero where none is.
-fn told(made: &PlaneEstimate, wrong: Option<(Constant, f64)>) -> f64 {
-    wrong.map_or(0.0, |(fault, value)| {
-        let own = made.suspects.iter().find(|suspect| suspect.fault == fault);
-        own.map_or(0.0, |suspect| value.abs() / suspect.deviation)
-    })
 }
 
 /// The largest of the errors in their deviations, the sum of their squares, how many there are; and the largest of the place over the size.
