@@ -167,9 +167,9 @@ fn jump(k: usize, interval: &Interval, wrenches: &[Wrench], rubs: bool) -> Optio
 /// both sides are alike, and nothing seems to jump where the rule errs most.
 const BESIDE: f64 = 0.5;
 
-/// Times the variance that noise makes of a jump, or of what two rules differ by, from which on it is one; and the same of palms that rub in the plane: whenever a slip ends friction jumps
-/// there, and jumps below nine times, up to 13 deviations of a force at a sample, would be taken for none, which is five deviations of an interval's
-/// impulse. In space the lower one mends nothing: one motion of twelve at 200 Hz is beyond five deviations with either.
+/// Times the variance that noise makes of a jump, or of what two rules differ by, from which on it is one; and the same of palms that rub in the plane:
+/// whenever a slip ends friction jumps there, and jumps below nine times, up to 13 deviations of a force at a sample, would be taken for none, which is five
+/// deviations of an interval's impulse. In space the lower one mends nothing: one motion of twelve at 200 Hz is beyond five deviations with either.
 const SEEN: f64 = 9.0;
 const EXPECTED: f64 = 1.0;
 

@@ -56,15 +56,19 @@ pub(super) fn start(problem: &Problem, body: Body, orientation: DQuat) -> Unknow
             centre = contacts.iter().map(within).sum::<DVec3>() / contacts.len() as f64;
         }
         let (v, w) = twist(&contacts, centre, problem.units.length);
-        if let Some((t, before)) = last {
-            let mean: DVec3 = 0.5 * (w + before);
-            q = (exponential(mean * (record.times[k] - t)) * q).normalize();
-        }
-        last = Some((record.times[k], w));
+        q = turned(q, &mut last, record.times[k], w);
         let L = body.inertia_along(DMat3::from_quat(q)) * w;
         motions.push(Motion { p: centre, v, L, q });
     }
     Unknowns { motions, body }
+}
+
+/// An orientation at the time `t`, from where it was at the last time with the angular velocity there; these become `t` and `w`.
+fn turned(q: DQuat, last: &mut Option<(f64, DVec3)>, t: f64, w: DVec3) -> DQuat {
+    match last.replace((t, w)) {
+        Some((before, w_before)) => (exponential(0.5 * (w + w_before) * (t - before)) * q).normalize(),
+        None => q,
+    }
 }
 
 /// A body that turns at a constant angular velocity, with the velocities that contacts leave it.
@@ -96,7 +100,7 @@ pub(super) fn shifted(problem: &Problem, from: &Unknowns, body: Body, shift: DVe
 pub(super) fn displaced(problem: &Problem, from: &Unknowns, shift: DVec3) -> Unknowns {
     let times = &problem.record.times;
     let mut motions: Vec<Motion> = Vec::with_capacity(from.motions.len());
-    let mut last: Option<(f64, DVec3)> = None;
+    let (mut q, mut last) = (from.motions.first().map_or(DQuat::IDENTITY, |motion| motion.q), None);
     for (motion, &k) in from.motions.iter().zip(&problem.nodes) {
         let p = motion.p + shift;
         let (mut right, mut normal) = (0.0, RIDGE * problem.units.length * problem.units.length);
@@ -106,13 +110,7 @@ pub(super) fn displaced(problem: &Problem, from: &Unknowns, shift: DVec3) -> Unk
             right += lever * contact.n.dot(contact.u - motion.v);
         }
         let w = DVec3::Y * (right / normal);
-        let q = match (last, motions.last()) {
-            (Some((t, before)), Some(previous)) => {
-                (exponential(0.5 * (w + before) * (times[k] - t)) * previous.q).normalize()
-            }
-            _ => motion.q,
-        };
-        last = Some((times[k], w));
+        q = turned(q, &mut last, times[k], w);
         let L = from.body.inertia_along(DMat3::from_quat(q)) * w;
         motions.push(Motion { p, v: motion.v, L, q });
     }
