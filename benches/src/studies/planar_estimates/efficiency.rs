@@ -5,7 +5,7 @@ use crate::planar_tally::{SILENT, errors};
 use cpu_time::ThreadTime;
 use nalgebra::SMatrix;
 use recon::object_dynamics::planar::PlanarTruth;
-use recon::observer::planar::{PlaneEstimate, estimate_plane};
+use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 use recon_benches::bound::plane::ContactErrors;
 use recon_benches::planar::scene::Scene;
 
@@ -17,8 +17,8 @@ const USUAL: f64 = 1.96;
 const NUMBERS: f64 = 5.0;
 
 /// Microseconds; of a run that is relied on its largest error in deviations; least deviation of the place at the end over the size; sums of squared errors at the end over
-/// the bound, over that of two errors and over the stated deviations, and the variance of the last.
-type Run = (f64, Option<f64>, [f64; 5]);
+/// the bound, over that of two errors, over the stated deviations and over those of noise alone, and the variance of the last two.
+type Run = (f64, Option<f64>, [f64; 6]);
 
 /// Over many runs.
 #[derive(Default)]
@@ -30,7 +30,7 @@ pub(super) struct Efficiency {
     right: usize,
     /// Over runs that count and are relied on: how many, sums as in a run.
     counted: f64,
-    sums: [f64; 4],
+    sums: [f64; 5],
     microseconds: f64,
     samples: f64,
 }
@@ -58,7 +58,9 @@ impl Efficiency {
             let last = truth.last().ok_or("no sample")?;
             let relied = made.reliability.is_reliable() && made.relied_on.last() == Some(&true);
             let worst = relied.then(|| errors(&made, truth, scene.length)[0]);
-            Ok((microseconds, worst, at_end(scene, &made, last, [&least, &of_two])))
+            // The same motion, without what constants that may be wrong add to its deviations.
+            let of_noise = estimate_plane(&log, &PlaneOptions { suspects: false, ..told })?;
+            Ok((microseconds, worst, at_end(scene, [&made, &of_noise], last, [&least, &of_two])))
         })?;
         let Some((microseconds, worst, [place, sums @ ..])) = run else { return Ok(()) };
         self.microseconds += microseconds;
@@ -92,11 +94,11 @@ impl Efficiency {
 
     /// Cells of a row.
     pub(super) fn told(&self) -> String {
-        let [least, of_two, stated, variance] = self.sums;
+        let [least, of_two, stated, of_noise, variance] = self.sums;
         let all = NUMBERS * self.counted.max(1.0);
         let half = USUAL * variance.sqrt() / all;
         format!(
-            "{} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} to {:.2} | {:.0}",
+            "{} | {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} to {:.2} | {:.0}",
             self.runs,
             self.relied,
             self.silent,
@@ -105,6 +107,7 @@ impl Efficiency {
             (least / all).sqrt(),
             (of_two / all).sqrt(),
             stated / all,
+            of_noise / all,
             1.0 - half,
             1.0 + half,
             self.microseconds / self.samples.max(1.0)
@@ -115,26 +118,30 @@ impl Efficiency {
 /// The least deviation of the place, and the sums of a run.
 fn at_end(
     scene: &Scene,
-    made: &PlaneEstimate,
+    made: [&PlaneEstimate; 2],
     truth: &PlanarTruth,
     [least, of_two]: [&SMatrix<f64, 5, 5>; 2],
-) -> [f64; 5] {
-    let last = made.states.len() - 1;
-    let (state, of) = (&made.states[last], &made.deviations[last]);
+) -> [f64; 6] {
+    let last = made[0].states.len() - 1;
+    let state = &made[0].states[last];
     let (p, v) = (state.p_WCm - truth.p_WCm, state.v_WCm - truth.v_WCm);
     let errors = [p.x, p.y, v.x, v.y, state.omega0 - truth.omega0];
-    let stated = [of.p_WCm.x, of.p_WCm.y, of.v_WCm.x, of.v_WCm.y, of.omega0];
+    let stated = made.map(|made| {
+        let of = &made.deviations[last];
+        [of.p_WCm.x, of.p_WCm.y, of.v_WCm.x, of.v_WCm.y, of.omega0]
+    });
     let speed = scene.length / scene.time;
     let natural = [scene.length, scene.length, speed, speed, scene.time.recip()];
-    let mut sums = [0.0; 3];
+    let mut sums = [0.0; 4];
     for i in 0..5 {
         let own = errors[i] / natural[i];
         sums[0] += own * own / least[(i, i)];
         sums[1] += own * own / of_two[(i, i)];
-        sums[2] += (errors[i] / stated[i]).powi(2);
+        sums[2] += (errors[i] / stated[0][i]).powi(2);
+        sums[3] += (errors[i] / stated[1][i]).powi(2);
     }
     // Of a sum of squares of normal numbers of unit variance with these correlations.
     let correlated = |i: usize, j: usize| least[(i, j)] * least[(i, j)] / (least[(i, i)] * least[(j, j)]);
     let variance: f64 = (0..5).flat_map(|i| (0..5).map(move |j| 2.0 * correlated(i, j))).sum();
-    [(least[(0, 0)] + least[(1, 1)]).sqrt(), sums[0], sums[1], sums[2], variance]
+    [(least[(0, 0)] + least[(1, 1)]).sqrt(), sums[0], sums[1], sums[2], sums[3], variance]
 }

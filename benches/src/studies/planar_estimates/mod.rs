@@ -138,12 +138,12 @@ fn head(scenes: &[Scene], bodies: usize, seed: u64) -> Result<(), Failure> {
         "The bound is the least deviation that the readings allow (Cramér-Rao, by sensitivities about the simulated motion: `benches/src/bound/plane.rs`). \
          Below 1 %: runs whose place is known to a hundredth of the size at the end by it; right: of these, relied on and within {SILENT} deviations at all \
          samples. Over these: root mean square errors at the end over the bound, and over that of an estimator that takes the error of a contact \
-         in its condition and in the moment of its force for two (see [planar.md](planar.md)); mean square of errors at the end in their deviations, and the band in which it is 19 times \
-         of 20 if these are right.\n"
+         in its condition and in the moment of its force for two (see [planar.md](planar.md)); mean square of errors at the end in their deviations, which are wider by what constants that may be wrong add to them, one log in ten being taken for one of \
+         those beforehand; the same without that, of noise alone; and the band in which this is 19 times of 20 if deviations are right.\n"
     );
     println!(
-        "| rate, Hz | noise | body | runs | relied on | silent | below 1 % | right | over the bound | over that of two | mean square | band | us a sample |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|"
+        "| rate, Hz | noise | body | runs | relied on | silent | below 1 % | right | over the bound | over that of two | mean square | of noise alone | band | us a sample |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
     );
     Ok(())
 }

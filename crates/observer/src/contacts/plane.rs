@@ -23,6 +23,9 @@ const CONTRADICTED: f64 = 9.2;
 /// How often conditions are taken for off by what is not known of the spin, and the share of their deviation from which on a change of that counts.
 const ROUNDS: usize = 8;
 const BLURS: f64 = 0.3;
+/// Deviations of the spin that it may be off by there. With one, `n` conditions of a stretch where the spin is as good as zero would tell it to a share of
+/// `1 / sqrt(n)` of that by nothing but noise of their levers, less in the next round, and so on; with four they tell little beside what is known.
+const SPIN_OFF: f64 = 4.0;
 
 type OfBody = SMatrix<f64, CONSTANTS, CONSTANTS>;
 
@@ -84,7 +87,7 @@ pub(super) fn body(of: &Body, mass: f64, root: f64) -> (Body, OfBody) {
 ///
 /// A contact that is read beside where it is, by `e`, is off in its condition by `z e`, of the spin `z` against the palm. Where that is as good as zero, as where a
 /// body turns back, the condition would be exact; but `z` is known to a deviation of its own, and of the product of both the variance is
-/// `(z^2 + var z) var e`.
+/// `(z^2 + var z) var e`. The same `e` is in the lever by which the condition tells of `z`: what it seems to tell by that is kept small by a larger `var z`.
 pub(super) fn blurred(problem: &mut Problem, solved: Solved<CONSTANTS>) -> Option<Solved<CONSTANTS>> {
     let (mut solved, mut before) = (solved, 0);
     let mut unknown = vec![usual_spin(problem, &solved); problem.nodes.len()];
@@ -131,7 +134,7 @@ fn blur(problem: &Problem, solved: &Solved<CONSTANTS>, unknown: &[f64]) -> (Vec<
     let (mut all, mut change) = (vec![0.0; problem.record.times.len()], 0.0);
     let motions = problem.at_samples(&solved.unknowns);
     for (j, (&from, motion)) in problem.nodes.iter().zip(&motions).enumerate() {
-        let unknown = unknown[j];
+        let unknown = SPIN_OFF * unknown[j];
         let spin = body.spin(motion.q, motion.L).y;
         let end = problem.nodes.get(j + 1).copied().unwrap_or(from + 1);
         for (k, blurred) in all.iter_mut().enumerate().take(end).skip(from) {
