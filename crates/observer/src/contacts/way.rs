@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-/// Deviations from which on a value is off: of what noise or, where that is more, the motion itself leaves of a cubic at most samples.
+/// Deviations from which on a value is off: of what the motion itself leaves of a cubic at most samples, and of what noise does.
 pub(super) const OFF: f64 = 8.0;
+const NOISE: f64 = 4.5;
 /// Values on either side that tell where one should be, and among how many samples they are looked for.
 const BESIDE: usize = 2;
 const AMONG: usize = 6;
@@ -133,7 +134,9 @@ impl Way {
             } else {
                 *scatter.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN_LENGTH
             };
-            OFF * usual.max(deviation).max(NOTABLE / OFF * spread)
+            // Noise makes no tails; a motion that bends does.
+            let bent = (usual * usual - deviation * deviation).max(0.0).sqrt();
+            (NOISE * deviation).max(OFF * bent).max(NOTABLE * spread)
         };
         // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
         let left = |j: usize| self.points[j].distance(self.usual(j));
