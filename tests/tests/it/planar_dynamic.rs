@@ -92,7 +92,7 @@ fn the_height_of_a_body_that_hardly_turns_is_found() {
 }
 
 /// A body of 3 cm that turns back at the end of its log, where its spin is all but that of the palms. With conditions off by one deviation of the spin there, what
-/// they tell of it is noise of their own levers: these two are then 8 and 13 deviations off in silence, at a stated deviation of a quarter to a fifth of the least one.
+/// they tell of it is noise of their own levers: the motion is then six deviations off and more in silence, at a stated deviation of a quarter to a fifth of the least one.
 #[test]
 fn noise_of_levers_tells_no_spin_where_a_body_turns_back_at_the_end() {
     const LENGTH: f64 = 0.030_531_870_724_598_457;
