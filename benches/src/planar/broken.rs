@@ -108,10 +108,11 @@ impl Wrong {
         Ok(PlanarLog::new(samples, log.truth().map(<[_]>::to_vec))?)
     }
 
-    /// The constant of the sensors that it is, and its value.
+    /// The constant of the sensors or of the body that it is, and its value.
     #[must_use]
     pub fn constant(self, scene: &Scene) -> Option<(Constant, f64)> {
         match self {
+            Self::Inertia(by) => Some((Constant::Moment { axis: 2 }, (1.0 + by).recip() - 1.0)),
             Self::ForcesLate(age) => Some((Constant::ForceDelay, age)),
             Self::ContactsLate(age) => Some((Constant::ContactDelay, age)),
             Self::Palm(by) => Some((Constant::PalmTilt { palm: 2, axis: 1 }, by.to_radians())),

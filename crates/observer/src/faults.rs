@@ -49,9 +49,9 @@ pub enum Constant {
     },
     /// Friction of all palms that are taken for frictionless.
     Friction,
-    /// Share by which the mass is more than stated, the inertia as it is. Tested in space.
+    /// Share by which the mass is more than stated, the inertia as it is.
     Mass,
-    /// Share by which a principal moment of inertia is more than stated, the others as they are. Tested in space.
+    /// Share by which a principal moment of inertia is more than stated, the others as they are. In the plane the one about its normal is the largest.
     Moment {
         /// Its place: 0 for the smallest, 2 for the largest.
         axis: usize,

@@ -62,7 +62,7 @@ pub enum Reason {
     },
     /// Without the stated mass and inertia the search leads to no motion, so that nothing confirms the one that was found with them.
     Unconfirmed,
-    /// Forces hardly change beyond noise: rest, slow rocking, or a disc.
+    /// Forces hardly change beyond noise, and the spin is not known well beside the place: rest, slow rocking, or a disc.
     Unchanging {
         /// Spread of the whole force, N, noise taken out.
         forces: f64,
@@ -106,8 +106,8 @@ impl fmt::Display for Reason {
             Self::OtherBody { mass, deviations, squares } => write!(
                 f,
                 "the stated mass and inertia are not those of this object: without them the mass comes out {mass:.4} times as large, which is \
-                 {deviations:.1} deviations off, and mass and moments together depart by {squares:.0} where chance makes 4: state others, or \
-                 none"
+                 {deviations:.1} deviations off, and mass and moments together depart by {squares:.0} squared deviations, where chance makes \
+                 a few: state others, or none"
             ),
             Self::Inconsistent { misfit } => write!(
                 f,

@@ -6,6 +6,7 @@ use recon::object_dynamics::{ChannelNoise, ContactNoise};
 use recon::observer::contacts::{ContactNoiseLevel, ContactOptions, estimate_contacts};
 use recon::observer::faults::Constant;
 use recon::observer::planar::*;
+use recon::observer::reliability::{Reason, Reliability};
 use recon_tests::few_or_all;
 
 const CONTACT: f64 = 1e-4;
@@ -37,6 +38,15 @@ fn estimate(log: &PlanarLog, mass: f64, inertia: f64) -> PlaneEstimate {
 fn wrong_constants_are_noticed() {
     let good = estimate(&log(|_, _| {}), 1.0, 1.0);
     assert!(good.reliability.is_reliable(), "{:?}", good.reliability);
+    let reasons = |made: PlaneEstimate| match made.reliability {
+        Reliability::Unreliable(reasons) => reasons,
+        Reliability::Reliable => Vec::new(),
+    };
+    // How many times the stated mass is that of the log.
+    let named = reasons(estimate(&log(|_, _| {}), 1.02, 1.02));
+    let mass =
+        named.iter().find_map(|of| if let Reason::OtherBody { mass, .. } = of { Some(*mass) } else { None });
+    assert!(mass.is_some_and(|mass| (mass * 1.02 - 1.0).abs() < 0.005), "{named:?}");
     let forces = |factors: [f64; 2], from: usize| {
         move |k: usize, sample: &mut PlanarSample| {
             if k >= from {
@@ -45,8 +55,7 @@ fn wrong_constants_are_noticed() {
         }
     };
     let bias = |_: usize, s: &mut PlanarSample| s.forces = s.forces.map(|[a, b]| [a + 0.04, b]);
-    let wrong: [(&str, &dyn Fn() -> PlaneEstimate); 8] = [
-        ("mass 2 %", &|| estimate(&log(|_, _| {}), 1.02, 1.02)),
+    let wrong: [(&str, &dyn Fn() -> PlaneEstimate); 7] = [
         ("inertia 10 %", &|| estimate(&log(|_, _| {}), 1.0, 1.1)),
         ("a palm half a degree off", &|| {
             estimate(&log(|_, s| s.angles[1] += 0.5_f64.to_radians()), 1.0, 1.0)
@@ -57,7 +66,7 @@ fn wrong_constants_are_noticed() {
         ("gain 20 %", &|| estimate(&log(forces([1.2, 1.0], 0)), 1.0, 1.0)),
         ("gain 20 % from 0.6 s on", &|| estimate(&log(forces([1.2, 1.0], 300)), 1.0, 1.0)),
     ];
-    for (name, made) in &wrong[..few_or_all(4, 8)] {
+    for (name, made) in &wrong[..few_or_all(3, 7)] {
         let made = made();
         println!("{name}: {:?}", made.reliability);
         assert!(!made.reliability.is_reliable(), "{name}");
@@ -87,6 +96,31 @@ fn late_contacts_are_told_from_those_on_time() {
         assert!((suspect.value - value).abs() < 0.2 * value + 4.0 * suspect.deviation, "{suspect}, {value}");
         assert!(suspect.score() > 4.75, "{suspect}, {value}: not noticed");
     }
+}
+
+/// A known body's moment of inertia is told with its value to the deviation that the moment of an unknown body has, which is another fit of the same log; of a mass the same.
+#[test]
+fn a_wrong_moment_of_inertia_is_told_as_well_as_an_unknown_one() {
+    let told = log(|_, _| {});
+    let (object, ..) = scene("S2_rotating_pair");
+    let free = options(noise_level(CONTACT, FORCE, 0.04), object.gravity, None);
+    let free = estimate_plane(&told.contact_log([0.0; 2]).unwrap(), &free).unwrap();
+    let of =
+        |made: &PlaneEstimate, fault: Constant| *made.suspects.iter().find(|of| of.fault == fault).unwrap();
+    let moment = Constant::Moment { axis: 2 };
+    let known = of(&estimate(&told, 1.0, 1.0), moment);
+    let unknown = free.inertia.1 / object.mass.inertia();
+    assert!((known.deviation / unknown - 1.0).abs() < 0.1, "{known}, unknown {unknown}");
+    // Stated too large by three deviations it is doubted, and by how much is told.
+    let off = 3.0 * known.deviation;
+    let wrong = of(&estimate(&told, 1.0, 1.0 + off), moment);
+    let moved = known.value - wrong.value;
+    assert!((moved / off - 1.0).abs() < 0.1, "{known}, {wrong}, {off}");
+    assert!(wrong.tolerated > 0.0 && wrong.tolerated < known.deviation, "{wrong:?}");
+    assert!(
+        free.suspects.iter().all(|of| !of.fault.is_of_body()),
+        "of a body that is not known there is nothing to suspect"
+    );
 }
 
 /// An offset of one contact shifts the centre of mass along, and nothing contradicts it: the data cannot tell, and say so.

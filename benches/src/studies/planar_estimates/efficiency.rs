@@ -115,6 +115,17 @@ impl Efficiency {
     }
 }
 
+/// Deviation of the place over the size.
+fn place(least: &SMatrix<f64, 5, 5>) -> f64 {
+    (least[(0, 0)] + least[(1, 1)]).sqrt()
+}
+
+/// Whether the readings of a known body tell its place at the end well enough for a run to count.
+pub(super) fn is_told(scene: &Scene, rate: f64, noise: f64) -> Result<bool, Failure> {
+    let least = scene.bound(&scene.log(rate)?, true, noise, ContactErrors::Once)?;
+    Ok(place(&least) < KNOWN_TO)
+}
+
 /// The least deviation of the place, and the sums of a run.
 fn at_end(
     scene: &Scene,
@@ -143,5 +154,5 @@ fn at_end(
     // Of a sum of squares of normal numbers of unit variance with these correlations.
     let correlated = |i: usize, j: usize| least[(i, j)] * least[(i, j)] / (least[(i, i)] * least[(j, j)]);
     let variance: f64 = (0..5).flat_map(|i| (0..5).map(move |j| 2.0 * correlated(i, j))).sum();
-    [(least[(0, 0)] + least[(1, 1)]).sqrt(), sums[0], sums[1], sums[2], sums[3], variance]
+    [place(least), sums[0], sums[1], sums[2], sums[3], variance]
 }

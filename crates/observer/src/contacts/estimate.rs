@@ -333,9 +333,7 @@ impl Source<'_> {
         }
         stage = stage.finished()?;
         if *planar {
-            let still = still(log);
-            stage = if still.is_none() && self.beginning.is_none() { stage.decided()? } else { stage };
-            stage.open = stage.open.or(still);
+            stage = if self.beginning.is_none() { stage.decided()? } else { stage };
             stage = if exact { stage } else { stage.blurred()? };
         }
         if sharp { stage.sharpened() } else { Some(stage) }
@@ -452,7 +450,9 @@ impl Found<'_> {
         let spin =
             |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of.map(|of| of * wider));
         let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
-        let against = [*short, *against, *open, ContactEvidence::still(&spins)];
+        let bent = |_: &Reason| ContactEvidence::is_bent(&spins, problem.units.length);
+        let unchanging = if options.planar { still(log).filter(bent) } else { None };
+        let against = [*short, *against, *open, unchanging, ContactEvidence::still(&spins)];
         for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects, explanations)) {
             reliability.add(reason);
         }

@@ -1,7 +1,7 @@
 //! What is different where all motion is in the plane of x and z: five numbers of a motion and five of a body are what they are.
 
 use super::body::{Body, CONSTANTS};
-use super::problem::{Problem, Units};
+use super::problem::{Beforehand, Problem, Units};
 use super::samples::{Deviations, deviations};
 use super::search::fine;
 use super::solve::Solved;
@@ -17,8 +17,8 @@ const HELD: f64 = 1e4;
 /// Deviation of the logarithm of a constant that is known: as good as exact, and what pulls at it can still be told.
 const KNOWN: f64 = 1e-4;
 /// Squared departure of a known body's mass and moment of inertia from what was found without knowing them, beyond which it is another one:
-/// two numbers in their deviations go there once in a hundred. What it costs to explain the log by it must go there too.
-const CONTRADICTED: f64 = 9.2;
+/// two numbers in their deviations go there once in a million. What it costs to explain the log by it must go there too.
+const CONTRADICTED: f64 = 27.6;
 
 /// How often conditions are taken for off by what is not known of the spin, and the share of their deviation from which on a change of that counts.
 const ROUNDS: usize = 8;
@@ -63,6 +63,16 @@ pub(super) fn flattened(of: &Matrix6<f64>, across: f64) -> Matrix6<f64> {
 /// How the constants of a body change with the logarithm of the root of its moment of inertia about y.
 fn swell() -> SVector<f64, CONSTANTS> {
     SVector::from_fn(|i, _| if i == 1 || i == 3 { 1.0 } else { 0.0 })
+}
+
+/// How the constants of a body change with the logarithm of its moment of inertia about y.
+pub(super) fn by_moment() -> SVector<f64, CONSTANTS> {
+    0.5 * swell()
+}
+
+/// Whether what is known beforehand of a body is its mass and moment of inertia.
+pub(super) fn is_known(beforehand: &Beforehand) -> bool {
+    beforehand.1[(0, 0)] >= KNOWN.powi(-2)
 }
 
 /// A body of the mass of `of` whose moments are all the one about y.
@@ -172,6 +182,6 @@ pub(super) fn known_motion(
     let solved = fine(problem, unknown.unknowns.with(known))?;
     let dearer = solved.equations.cost - unknown.equations.cost > CONTRADICTED;
     let deviations = departure[0].abs() / covariance[(0, 0)].sqrt();
-    let other = Reason::OtherBody { mass: found.log_mass.exp(), deviations, squares };
+    let other = Reason::OtherBody { mass: departure[0].exp(), deviations, squares };
     Some((solved, (squares > CONTRADICTED && dearer && unknown.explained()).then_some(other)))
 }

@@ -7,6 +7,7 @@ use super::body::CONSTANTS;
 use super::chain::Chain;
 use super::equations::Gradient;
 use super::levers::Levers;
+use super::plane;
 use super::problem::Problem;
 use super::solve::{Covariances, Solved, Step};
 use super::state::Tangent;
@@ -18,8 +19,9 @@ use nalgebra::{SMatrix, SVector};
 pub(super) struct StatedBody<'a> {
     problem: &'a Problem<'a>,
     solved: &'a Solved<CONSTANTS>,
-    /// What noise of the spins adds to the information on the body, and that of the levers to that on the motion.
-    spurious: SMatrix<f64, CONSTANTS, CONSTANTS>,
+    /// What noise of the spins adds to the information on the body, and that of the levers to that on the motion; nothing in the plane, where the one
+    /// axis is known.
+    spurious: Option<SMatrix<f64, CONSTANTS, CONSTANTS>>,
     levers: Levers,
 }
 
@@ -32,17 +34,17 @@ pub(super) const CONSTANTS_OF_BODY: [Constant; 4] = [
 ];
 
 impl<'a> StatedBody<'a> {
-    /// None in the plane, where mass and moment are compared with what is found without them at odds of one in a hundred, and where the body is not held
-    /// as one of known moments.
+    /// None of a body that is not a stated one.
     pub(super) fn new(
         problem: &'a Problem<'a>,
         solved: &'a Solved<CONSTANTS>,
         covariances: &Covariances<CONSTANTS>,
     ) -> Option<Self> {
-        if problem.planar || !problem.body.0.is_turned() {
+        let stated = if problem.planar { plane::is_known(&problem.body) } else { problem.body.0.is_turned() };
+        if !stated {
             return None;
         }
-        let spurious = covariances.spurious(&solved.equations, &solved.unknowns);
+        let spurious = (!problem.planar).then(|| covariances.spurious(&solved.equations, &solved.unknowns));
         Some(Self { problem, solved, spurious, levers: Levers::new(problem, &solved.unknowns) })
     }
 
@@ -67,7 +69,7 @@ impl<'a> StatedBody<'a> {
         let whole = held / (held - left).max(f64::EPSILON * held);
         // Noise poses as information on what motion and axes follow by, and takes nothing from it.
         let of_levers = levers.added(&levers.turned(&follows)).0;
-        let of_spins = (spurious * follows.body).dot(&follows.body).max(0.0);
+        let of_spins = spurious.map_or(0.0, |spurious| (spurious * follows.body).dot(&follows.body).max(0.0));
         let spurious = of_spins + of_levers;
         Some(Score::of(slope * whole, [left, left, spurious].map(|of| of * whole), follows))
     }
@@ -77,6 +79,8 @@ impl<'a> StatedBody<'a> {
 fn direction(problem: &Problem, constant: Constant) -> Option<SVector<f64, CONSTANTS>> {
     match constant {
         Constant::Mass => Some(SVector::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 })),
+        // Of a lamina the one about its normal is the largest.
+        Constant::Moment { axis } if problem.planar => (axis == 2).then(plane::by_moment),
         Constant::Moment { axis } => problem.body.0.by_moment(axis),
         _ => None,
     }

@@ -4,8 +4,8 @@ use super::record::Record;
 use crate::reliability::Reason;
 use glam::DVec3;
 
-/// Spread of the whole force over the deviation of its mean by noise, below which a log of the plane tells nothing of a motion, however far contacts move:
-/// of slow rocking on palms at rest motions up to 28 deviations off were found where it was 0, none from 50 on.
+/// Spread of the whole force over the deviation of its mean by noise, below which a log of the plane tells of a motion by its spin alone, however far contacts
+/// move: of slow rocking on palms at rest motions up to 28 deviations off were found where it was 0, none from 50 on.
 const FELT: f64 = 10.0;
 /// Noise of the whole force that there is at least, as a share of it: that of readings of so many digits.
 const SMALLEST: f64 = 1e-9;

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub(super) const UNEXPLAINED: f64 = 4.75;
 /// The same once in ten thousand.
 const UNLIKELY: f64 = 3.7;
-/// Share of a deviation of the velocity that a product of two deviations may be: it makes errors of that size at most which last.
+/// Share of a deviation that what a linear model leaves out may be, as a product of two deviations: it makes errors of that size at most which last.
 const BENT: f64 = 0.5;
 /// Length of a stretch in natural times.
 const STRETCH: f64 = 1.0;
@@ -63,13 +63,19 @@ impl ContactEvidence {
     /// The conditions hold the product of both. Where it does not change beyond its deviations the linear model of that product is kept as long
     /// as the deviations of its factors, multiplied, hardly count beside the velocity that they are added to.
     pub(super) fn still(nodes: &[(DVec3, Deviations)]) -> Option<Reason> {
-        let mean = nodes.iter().map(|(w, _)| *w).sum::<DVec3>() / nodes.len().max(1) as f64;
-        let change = |(w, [_, _, deviation, _]): &(DVec3, Deviations)| {
-            ((*w - mean).abs() / deviation.max(DVec3::splat(f64::MIN_POSITIVE))).max_element()
-        };
-        let deviations = nodes.iter().map(change).fold(0.0, f64::max);
+        let deviations = change_of_spin(nodes);
         let bent = |(_, [p, v, w, _]): &(DVec3, Deviations)| p.length() * w.length() > BENT * v.length();
         (deviations < UNEXPLAINED && nodes.iter().any(bent)).then_some(Reason::Still { deviations })
+    }
+
+    /// Whether a body in the plane, with levers of the length `lever`, turns too little for its place to be known as well as its deviation says.
+    ///
+    /// Its centre of mass is at a velocity over the spin. Where the change of the spin is known to a share of itself, a linear model misses the square of that
+    /// share of the lever, which lasts: it is to be no more than [`BENT`] of the deviation.
+    pub(super) fn is_bent(nodes: &[(DVec3, Deviations)], lever: f64) -> bool {
+        let deviations = change_of_spin(nodes);
+        let place = nodes.iter().map(|(_, [p, ..])| p.length()).fold(f64::INFINITY, f64::min);
+        lever > BENT * place * deviations * deviations
     }
 
     /// A constant of the sensors, where the data speak against one: the one that explains them best, if that was asked.
@@ -96,6 +102,15 @@ impl ContactEvidence {
     pub(super) fn widening_of_constants(&self) -> f64 {
         if self.is_explained() { self.widening() } else { self.misfit.max(1.0).sqrt() }
     }
+}
+
+/// The largest change of the spin from its mean, in its deviations.
+fn change_of_spin(nodes: &[(DVec3, Deviations)]) -> f64 {
+    let mean = nodes.iter().map(|(w, _)| *w).sum::<DVec3>() / nodes.len().max(1) as f64;
+    let change = |(w, [_, _, deviation, _]): &(DVec3, Deviations)| {
+        ((*w - mean).abs() / deviation.max(DVec3::splat(f64::MIN_POSITIVE))).max_element()
+    };
+    nodes.iter().map(change).fold(0.0, f64::max)
 }
 
 /// Whether noise explains this misfit, of so many conditions.
@@ -159,5 +174,18 @@ mod tests {
         let of = [1e-2, 3e-4, 0.1, 0.1].map(DVec3::splat);
         assert_eq!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X, of)]), None);
         assert!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X * 0.5, of)]).is_some());
+    }
+
+    /// The place of a centre of mass is a velocity over a spin: what its linear model leaves out is half a deviation where the share that the spin's change is
+    /// known to, squared, is half the place's over the lever.
+    #[test]
+    fn a_body_in_the_plane_is_still_where_its_spin_is_not_known_well_beside_its_place() {
+        let (lever, place, spin) = (0.05, 1e-3, 0.2);
+        let turning = |change: f64| {
+            let of = [DVec3::X * place, DVec3::ONE, DVec3::splat(spin), DVec3::ONE];
+            ContactEvidence::is_bent(&[(DVec3::ZERO, of), (DVec3::Y * 2.0 * change * spin, of)], lever)
+        };
+        let least = (lever / (BENT * place)).sqrt();
+        assert!(!turning(1.01 * least) && turning(0.99 * least));
     }
 }
