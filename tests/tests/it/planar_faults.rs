@@ -98,7 +98,7 @@ fn late_contacts_are_told_from_those_on_time() {
     }
 }
 
-/// A known body's moment of inertia is told with its value to the deviation that the moment of an unknown body has, which is another fit of the same log; of a mass the same.
+/// A known body's moment of inertia is told with its value to the deviation that the moment of an unknown body has, which is another fit of the same log.
 #[test]
 fn a_wrong_moment_of_inertia_is_told_as_well_as_an_unknown_one() {
     let told = log(|_, _| {});
