@@ -9,7 +9,7 @@ use crate::faults::Suspect;
 /// Odds beforehand that one of the constants of a log, whichever, is not what it was taken for.
 const BEFOREHAND: f64 = 0.1;
 /// Squared score beyond which nothing changes any more: such a constant is wrong.
-const CERTAIN: f64 = 100.0;
+pub(crate) const CERTAIN: f64 = 100.0;
 
 /// What each constant may be off by, as the standard deviation of an error of its own in its unit: 0 of those that nothing speaks against.
 pub(crate) fn errors(suspects: &[Suspect]) -> Vec<f64> {

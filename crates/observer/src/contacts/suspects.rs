@@ -22,7 +22,7 @@ use super::state::{Motion, Tangent};
 use super::stated_body::{CONSTANTS_OF_BODY, StatedBody};
 use super::verdict::ContactEvidence;
 use super::windows::Window;
-use crate::doubted;
+use crate::doubted::{self, CERTAIN};
 use crate::faults::{Constant, Suspect};
 use crate::reliability::LARGEST_DEVIATION;
 use contact_kinematics::{PalmSurface, in_parts};
@@ -224,7 +224,11 @@ fn followed(
         }?;
         let deviation = (wider * score.deviation).hypot(score.posing);
         // A constant that is known no better than that is beyond what a linearisation tells.
-        let far = deviation > LARGEST_DEVIATION * fault.natural(&problem.units);
+        let reach = LARGEST_DEVIATION * fault.natural(&problem.units);
+        // Noise of the spin poses as information on where contacts are: it was seen to tell of values as large as the body at five deviations.
+        let posed = matches!(fault, Constant::ContactOffset { .. })
+            && (reach..CERTAIN.sqrt() * deviation).contains(&score.value.abs());
+        let far = deviation > reach || posed;
         let (value, deviation) = if far { (0.0, f64::INFINITY) } else { (score.value, deviation) };
         let moved = |(of, by): (&Tangent, &Tangent)| by.component_div(of).abs().max();
         let most = deviations.iter().zip(&score.follows.motions).map(moved).fold(0.0, f64::max);
