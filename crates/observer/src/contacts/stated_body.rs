@@ -21,7 +21,7 @@ pub(super) struct StatedBody<'a> {
     solved: &'a Solved<CONSTANTS>,
     /// What noise of the spins adds to the information on the body, and that of the levers to that on the motion; nothing in the plane, where the one
     /// axis is known.
-    spurious: Option<SMatrix<f64, CONSTANTS, CONSTANTS>>,
+    spurious: SMatrix<f64, CONSTANTS, CONSTANTS>,
     levers: Levers,
 }
 
@@ -44,7 +44,11 @@ impl<'a> StatedBody<'a> {
         if !stated {
             return None;
         }
-        let spurious = (!problem.planar).then(|| covariances.spurious(&solved.equations, &solved.unknowns));
+        let spurious = if problem.planar {
+            SMatrix::zeros()
+        } else {
+            covariances.spurious(&solved.equations, &solved.unknowns)
+        };
         Some(Self { problem, solved, spurious, levers: Levers::new(problem, &solved.unknowns) })
     }
 
@@ -69,7 +73,7 @@ impl<'a> StatedBody<'a> {
         let whole = held / (held - left).max(f64::EPSILON * held);
         // Noise poses as information on what motion and axes follow by, and takes nothing from it.
         let of_levers = levers.added(&levers.turned(&follows)).0;
-        let of_spins = spurious.map_or(0.0, |spurious| (spurious * follows.body).dot(&follows.body).max(0.0));
+        let of_spins = (spurious * follows.body).dot(&follows.body).max(0.0);
         let spurious = of_spins + of_levers;
         Some(Score::of(slope * whole, [left, left, spurious].map(|of| of * whole), follows))
     }
