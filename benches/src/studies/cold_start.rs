@@ -69,7 +69,6 @@ fn kind(reason: &Reason) -> &'static str {
         Reason::NotConverged { .. } => "the fit did not settle",
         Reason::Still { .. } => "hardly turns",
         Reason::Ambiguous { .. } => "another motion as good",
-        Reason::Unchanging { .. } => "readings hardly change",
         Reason::Unconfirmed => "not confirmed without the stated body",
         Reason::TooShort { .. } => "too short for its noise",
         Reason::TooSparse { .. } => "samples too far apart",

@@ -62,13 +62,6 @@ pub enum Reason {
     },
     /// Without the stated mass and inertia the search leads to no motion, so that nothing confirms the one that was found with them.
     Unconfirmed,
-    /// Forces hardly change beyond noise, and the spin is not known well beside the place: rest, slow rocking, or a disc.
-    Unchanging {
-        /// Spread of the whole force, N, noise taken out.
-        forces: f64,
-        /// Standard deviation of its noise at a sample, N.
-        noise: f64,
-    },
     /// Another motion explains the log as well.
     Ambiguous {
         /// How far it is from this one, in deviations of the velocities or positions.
@@ -119,11 +112,6 @@ impl fmt::Display for Reason {
                 f,
                 "the body hardly turns: its angular velocity changes by {deviations:.1} of its deviations at most, and where its centre of mass is \
                  follows from such changes"
-            ),
-            Self::Unchanging { forces, noise } => write!(
-                f,
-                "the whole force hardly changes beyond its noise (by {forces:.1e} N, and {noise:.1e} N from sample to sample): at rest, rocking \
-                 slowly, or round, a body shows no motion"
             ),
             Self::Ambiguous { apart } => write!(
                 f,

@@ -22,7 +22,6 @@ use super::solve::{Covariances, Solved, Step};
 use super::stage::Stage;
 use super::state::Motion;
 use super::suspects::{Readings, Scores, Sensors, suspects};
-use super::unchanging::still;
 use super::verdict::{ContactEvidence, relied_on, stretches};
 use super::windows::{Window, longest, windows};
 use crate::faults::{Explanation, Suspect};
@@ -450,9 +449,7 @@ impl Found<'_> {
         let spin =
             |(motion, of): &(Motion, Deviations)| (body.turn(motion.q, motion.L).w, of.map(|of| of * wider));
         let spins: Vec<_> = problem.node_samples().iter().map(|&k| spin(&motions[k])).collect();
-        let bent = |_: &Reason| ContactEvidence::is_bent(&spins, problem.units.length);
-        let unchanging = if options.planar { still(log).filter(bent) } else { None };
-        let against = [*short, *against, *open, unchanging, ContactEvidence::still(&spins)];
+        let against = [*short, *against, *open, ContactEvidence::still(&spins)];
         for reason in against.into_iter().flatten().chain(ContactEvidence::against(suspects, explanations)) {
             reliability.add(reason);
         }

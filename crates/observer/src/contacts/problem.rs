@@ -2,6 +2,7 @@
 
 use super::body::{Body, CONSTANTS};
 use super::chain::SHARED;
+use super::ends::Held;
 use super::equations::{Equations, LinkEquation, Room, Row, Split};
 use super::feet::{Foot, Share, Told, at_end};
 use super::first::First;
@@ -75,6 +76,8 @@ pub(super) struct Problem<'a> {
     pub(super) patient: bool,
     /// What a step over each interval misses of the motion, where that is known: else none of it.
     pub(super) missed: Vec<Tangent>,
+    /// A spin in the plane that is held to see what that costs.
+    pub(super) held: Option<Held>,
     /// What the conditions of each sample are off by beside noise, since the spin is not known that they are taken with, m/s; else nothing.
     pub(super) blurred: Vec<f64>,
 }
@@ -121,6 +124,7 @@ impl Problem<'_> {
             shares,
             patient,
             missed: Vec::new(),
+            held: None,
             blurred,
         }
     }
@@ -367,6 +371,7 @@ impl Problem<'_> {
     pub(super) fn add_prior<const P: usize>(&self, at: &Unknowns, all: &mut Equations<P>) {
         all.cost += self.prior_cost::<P>(at);
         self.first.add(&at.motions[0], &at.body, self.record.origin, all);
+        self.held.iter().for_each(|held| held.add(at, all));
         if self.planar {
             let held = plane::held().component_mul(&self.natural_information());
             all.nodes.iter_mut().for_each(|node| node.own += Transition::from_diagonal(&held));
@@ -408,7 +413,8 @@ impl Problem<'_> {
     }
 
     pub(super) fn prior_cost<const P: usize>(&self, at: &Unknowns) -> f64 {
-        let cost = self.first.cost(&at.motions[0], &at.body, self.record.origin);
+        let held = self.held.map_or(0.0, |held| held.cost(at));
+        let cost = held + self.first.cost(&at.motions[0], &at.body, self.record.origin);
         if P == 0 {
             return cost;
         }

@@ -28,18 +28,14 @@ const SEED: u64 = 0x2d0;
 /// How much noise is drawn, of what there is: a part of it, as that which was there already has carried a body along a valley.
 const AMOUNT: f64 = 0.7;
 /// Linearisations of each solution, and what a step of it promises in units of chi-squared.
-const MOST: usize = 20;
-const ENOUGH: f64 = 0.05;
+pub(super) const SOLVED: (usize, f64) = (20, 0.05);
 /// Share of the trace of a covariance that is added to each of its variances, so that it has a factor.
 const RIDGE: f64 = 1e-9;
 
 impl Covariances<CONSTANTS> {
     /// Widened to what solutions with noise drawn so often spread by, where that is farther than deviations say.
     pub(super) fn redrawn(mut self, problem: &Problem, solved: &Solved<CONSTANTS>, draws: usize) -> Self {
-        // Conditions that are off by what is not known of the spin are not linear in it.
-        let linear = self.body.diagonal().max() < SMALL * SMALL && problem.blurred.is_empty();
-        // Under friction in the plane it took as long again and told nothing.
-        if linear || problem.planar && !problem.record.frictionless() {
+        if self.body.diagonal().max() < SMALL * SMALL {
             return self;
         }
         let many = !problem.record.frictionless() || problem.record.has_blows();
@@ -47,7 +43,7 @@ impl Covariances<CONSTANTS> {
         let mut random = Normal::seeded(SEED);
         let one = |record: &Record| {
             let drawn = problem.on(record);
-            let found = solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), MOST, ENOUGH)?.unknowns;
+            let found = solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), SOLVED.0, SOLVED.1)?.unknowns;
             Some(Unknowns { motions: drawn.at_samples(&found), ..found })
         };
         // Two at a time.
@@ -67,16 +63,9 @@ impl Covariances<CONSTANTS> {
         self.body = wider * self.body * wider;
         let known: Vec<_> =
             (0..own.motions.len()).map(|j| deviations(&own.motions[j], &own.body, j, &self)).collect();
-        // Axes that each of them has.
-        let axes = if problem.planar { [2.0, 2.0, 1.0, 1.0] } else { [3.0; 4] };
         let beyond = |(j, known): (usize, &[DVec3; 4])| {
             let spread = |i: usize| mean(&|at| (departure(own, at, j)[i] / known[i]).length_squared());
-            std::array::from_fn(|i| {
-                let mean = spread(i) / (axes[i] * AMOUNT * AMOUNT);
-                // Few axes have a spread that scatters by itself.
-                let scatter = (2.0 / (axes[i] * all.len().max(1) as f64)).sqrt();
-                (if problem.planar { mean - scatter } else { mean }).max(1.0).sqrt()
-            })
+            std::array::from_fn(|i| (spread(i) / (3.0 * AMOUNT * AMOUNT)).max(1.0).sqrt())
         };
         self.beyond = known.iter().enumerate().map(beyond).collect();
         self
@@ -84,7 +73,7 @@ impl Covariances<CONSTANTS> {
 }
 
 /// Centre of mass, velocity, angular velocity and turn of node `j` at some unknowns, from those at others.
-fn departure(from: &Unknowns, to: &Unknowns, j: usize) -> [DVec3; 4] {
+pub(super) fn departure(from: &Unknowns, to: &Unknowns, j: usize) -> [DVec3; 4] {
     let (a, b) = (&from.motions[j], &to.motions[j]);
     let step = b.from(a);
     let spin = to.body.spin(b.q, b.L) - from.body.spin(a.q, a.L);
@@ -201,7 +190,7 @@ mod tests {
         for _ in 0..draws {
             let record = record.redrawn(&problem, &mut random);
             let drawn = problem.on(&record);
-            let found = solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), MOST, ENOUGH).unwrap();
+            let found = solve::<CONSTANTS>(&drawn, solved.unknowns.clone(), SOLVED.0, SOLVED.1).unwrap();
             added += (found.misfit() - solved.misfit()) / f64::from(draws);
         }
         // Deviation of the mean of so many conditions, whose residuals have both noises.

@@ -312,6 +312,7 @@ pub(super) fn problem<'a>(record: &'a Record, options: &ContactOptions, units: U
         // Noise of nothing is explained, and chains with blows are stiff: steps along a curved valley are short there.
         patient: !options.noise.limits(&units) || record.has_blows(),
         missed: Vec::new(),
+        held: None,
         blurred: Vec::new(),
     }
 }

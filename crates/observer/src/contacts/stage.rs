@@ -321,11 +321,11 @@ impl<'a> Stage<'a> {
         if refused {
             return linear;
         }
-        let widened = linear.redrawn(&self.problem, &self.solved, DRAWS);
         // In the plane a lever is adjusted along the one direction that it has.
         if self.problem.planar {
-            return widened;
+            return linear.reaching(&self.problem, &self.solved);
         }
+        let widened = linear.redrawn(&self.problem, &self.solved, DRAWS);
         widened.with_errors(errors_of_levers(&self.problem, &self.solved))
     }
 }

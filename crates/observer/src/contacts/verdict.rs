@@ -68,16 +68,6 @@ impl ContactEvidence {
         (deviations < UNEXPLAINED && nodes.iter().any(bent)).then_some(Reason::Still { deviations })
     }
 
-    /// Whether a body in the plane, with levers of the length `lever`, turns too little for its place to be known as well as its deviation says.
-    ///
-    /// Its centre of mass is at a velocity over the spin. Where the change of the spin is known to a share of itself, a linear model misses the square of that
-    /// share of the lever, which lasts: it is to be no more than [`BENT`] of the deviation.
-    pub(super) fn is_bent(nodes: &[(DVec3, Deviations)], lever: f64) -> bool {
-        let deviations = change_of_spin(nodes);
-        let place = nodes.iter().map(|(_, [p, ..])| p.length()).fold(f64::INFINITY, f64::min);
-        lever > BENT * place * deviations * deviations
-    }
-
     /// A constant of the sensors, where the data speak against one: the one that explains them best, if that was asked.
     pub(super) fn against(suspects: &[Suspect], explanations: &[Explanation]) -> Option<Reason> {
         let most = suspects.iter().max_by(|a, b| a.score().abs().total_cmp(&b.score().abs()))?;
@@ -174,18 +164,5 @@ mod tests {
         let of = [1e-2, 3e-4, 0.1, 0.1].map(DVec3::splat);
         assert_eq!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X, of)]), None);
         assert!(ContactEvidence::still(&[(DVec3::ZERO, of), (DVec3::X * 0.5, of)]).is_some());
-    }
-
-    /// The place of a centre of mass is a velocity over a spin: what its linear model leaves out is half a deviation where the share that the spin's change is
-    /// known to, squared, is half the place's over the lever.
-    #[test]
-    fn a_body_in_the_plane_is_still_where_its_spin_is_not_known_well_beside_its_place() {
-        let (lever, place, spin) = (0.05, 1e-3, 0.2);
-        let turning = |change: f64| {
-            let of = [DVec3::X * place, DVec3::ONE, DVec3::splat(spin), DVec3::ONE];
-            ContactEvidence::is_bent(&[(DVec3::ZERO, of), (DVec3::Y * 2.0 * change * spin, of)], lever)
-        };
-        let least = (lever / (BENT * place)).sqrt();
-        assert!(!turning(1.01 * least) && turning(0.99 * least));
     }
 }
