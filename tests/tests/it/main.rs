@@ -18,6 +18,7 @@ mod mode_bank_on_a_belt;
 mod noisy;
 mod paper_method;
 mod planar_basin;
+mod planar_branches;
 mod planar_common;
 mod planar_dynamic;
 mod planar_failures;

@@ -156,7 +156,9 @@ impl Covariances<CONSTANTS> {
         let share = |off: f64, of: f64| if of > 0.0 { off.abs() / (of * allowed) } else { 0.0 };
         let of = |(j, known): (usize, &[DVec3; 4])| {
             let off = departure(from, to, j);
-            std::array::from_fn(|i| (0..3).map(|axis| share(off[i][axis], known[i][axis])).fold(0.0, f64::max))
+            std::array::from_fn(|i| {
+                (0..3).map(|axis| share(off[i][axis], known[i][axis])).fold(0.0, f64::max)
+            })
         };
         let body = to.body.from(&from.body);
         Reach {

@@ -260,8 +260,8 @@ fn bad_input_is_refused() {
         assert!(run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
         assert!(!scratch.path().join("recon-planar").exists());
     }
-    // Millimetres for metres are no error, and readings that stand still no motion: both are told.
+    // Millimetres for metres are no error, and of readings that stand still no row tells a motion: both are said.
     let run = scratch.run(&known("millimetres.csv"));
     assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
-    assert!(run.stdout.contains("hardly change") && run.stdout.contains("m (lengths are in metres)"));
+    assert!(run.stdout.contains("relied on at 0 % of") && run.stdout.contains("m (lengths are in metres)"));
 }
