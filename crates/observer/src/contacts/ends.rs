@@ -1,4 +1,4 @@
-//! Motions of a body in the plane that has another spin at an end of its log: where else it may be, and how far a linear model of it reaches.
+//! Motions of a body in the plane that has another spin, most of all at an end of its log: where else it may be, and how far a linear model of it reaches.
 //!
 //! A spin is told by how conditions change along a log, least at its ends, and conditions are the better the slower a body turns against a palm. Both make
 //! what a log tells of it bent: to one side the spin may be off by six deviations at what three cost, on another branch of the motion before a turn-back
@@ -53,8 +53,8 @@ impl Held {
     }
 }
 
-/// An end of a log.
-struct End {
+/// The spin at a node, and what follows from another one.
+struct SpinAt {
     node: usize,
     /// Of the angular momentum there.
     deviation: f64,
@@ -62,7 +62,7 @@ struct End {
     step: Step<CONSTANTS>,
 }
 
-impl End {
+impl SpinAt {
     fn new(chain: &Chain<CONSTANTS>, node: usize, count: usize) -> Self {
         let mut pull = Gradient { motions: vec![Tangent::zeros(); count], body: SVector::zeros() };
         pull.motions[node][MOMENTUM] = -1.0;
@@ -96,8 +96,8 @@ pub(super) fn starts(
     chain: &Chain<CONSTANTS>,
 ) -> Vec<Unknowns> {
     let count = found.unknowns.motions.len();
-    let ends = [0, count - 1].map(|node| End::new(chain, node, count));
-    ends.iter().flat_map(|end| STARTS_AT.map(|off| end.led(problem, found, off))).flatten().collect()
+    let ends = [0, count - 1].map(|node| SpinAt::new(chain, node, count));
+    ends.iter().flat_map(|spin| STARTS_AT.map(|off| spin.led(problem, found, off))).flatten().collect()
 }
 
 /// How much farther than their deviations the numbers of a solution reach.
@@ -116,7 +116,7 @@ impl Reach {
 }
 
 impl Covariances<CONSTANTS> {
-    /// Widened to what motions in the plane reach that are held off at their ends, where that is farther than deviations say: where a model is linear, a motion that
+    /// Widened to what motions in the plane reach whose spin is held off at an end or where it is known best, where that is farther than deviations say: where a model is linear, a motion that
     /// costs as much as `c` more has no number that is more than `sqrt(c)` deviations off.
     pub(super) fn reaching(mut self, problem: &Problem, solved: &Solved<CONSTANTS>) -> Self {
         let count = solved.unknowns.motions.len();
@@ -124,12 +124,12 @@ impl Covariances<CONSTANTS> {
         let known: Vec<_> =
             own.iter().enumerate().map(|(j, own)| deviations(own, &solved.unknowns.body, j, &self)).collect();
         let of_node = |node: usize| {
-            let end = End::new(&self.chain, node, count);
+            let at = SpinAt::new(&self.chain, node, count);
             let mut reach = Reach { motions: vec![[1.0; 4]; count], body: SVector::repeat(1.0) };
             for side in HELD_AT {
                 let mut off = side;
                 for _ in 0..ROUNDS {
-                    let Some((other, dearer)) = end.held(problem, solved, off) else { break };
+                    let Some((other, dearer)) = at.held(problem, solved, off) else { break };
                     // A unit more: what is left where a solution ends.
                     let dearer = dearer.max(0.0) + 1.0;
                     reach = reach.larger(&self.reached(&solved.unknowns, &other, &known, dearer.sqrt()));

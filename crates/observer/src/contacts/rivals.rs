@@ -1,8 +1,8 @@
 //! Other motions that explain a log as well: a covariance tells of what is near the one that was found, and of no other.
 //!
 //! Readings that hardly change (at rest, of a disc, over a short time) are explained by motions far from each other. They are looked for
-//! from starts of their own, motions that spin otherwise, all along or at an end, and what the motion comes to of a body as it was expected; one that is about as probable and farther away than
-//! deviations reach says that the log does not tell.
+//! from starts of their own, motions that spin otherwise, all along or at an end, or are higher, and what the motion comes to of a body as it was expected; one that is
+//! about as probable and farther away than deviations reach says that the log does not tell.
 
 use super::body::{Body, CONSTANTS};
 use super::cold;
@@ -85,10 +85,8 @@ pub(super) fn decided(problem: &mut Problem, found: Solved<CONSTANTS>) -> Option
         let (solved, frozen) = &all[best].rival;
         problem.frozen.clone_from(frozen);
         let before = best;
-        let body = solved.unknowns.body;
-        let body = if problem.planar { body } else { round(&body) };
         let covariances = solved.covariances(problem)?;
-        let mut starts = starts(problem, solved, &covariances, body);
+        let mut starts = starts(problem, solved, &covariances, round(&solved.unknowns.body));
         let found = solved.unknowns.clone();
         if !problem.planar && all.len() == 1 && is_short(problem) && is_unsure(problem, solved) {
             starts.extend(flung(problem));
@@ -243,7 +241,8 @@ pub(super) fn another(
     goes_on_beside(problem, found, &other).then_some(other)
 }
 
-/// In the plane the motion with another spin at an end or another height, and what follows from that; in space the motion as it is, of `body`, that spins otherwise.
+/// In the plane the motion with another spin at an end, with what follows from that, or at another height; in space the motion as it is, of `body`, that spins
+/// otherwise.
 fn starts(
     problem: &Problem,
     found: &Solved<CONSTANTS>,
