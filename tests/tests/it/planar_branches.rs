@@ -1,6 +1,6 @@
 //! Motions in the plane that a log explains by more than one: on another branch before a turn-back, or at another height.
 
-use crate::planar_common::{Errors, errors, noise_level, options, times};
+use crate::planar_common::{Errors, errors, fourier_object, noise_level, options, times};
 use recon::contact_kinematics::planar::FourierBody;
 use recon::object_dynamics::planar::*;
 use recon::observer::contacts::ContactNoiseLevel;
@@ -33,12 +33,11 @@ fn estimate(
 #[test]
 fn a_branch_before_a_turn_back_is_within_what_is_stated() {
     const LENGTH: f64 = 0.100_631_540_408_868_54;
-    let shape = FourierBody::new(
+    let object = fourier_object(
         &[LENGTH, 0.005_806_239_344_884_366, -0.005_555_769_927_155_43],
         &[0.0, 0.006_507_228_748_222_019, -0.001_666_946_888_335_705],
+        [3.414_907_205_717_002_5, 0.016_718_098_770_010_96],
     );
-    let mass = PlanarMass::new(3.414_907_205_717_002_5, 0.016_718_098_770_010_96).unwrap();
-    let object = PlanarObject { shape: shape.unwrap(), mass, gravity: 9.81 };
     let palms = HarmonicPalms {
         centres: [1.288_785_551_437_303, 1.190_468_334_329_671_4],
         amplitudes: [0.354_131_173_617_37, 0.029_686_952_965_705_428],
@@ -57,12 +56,11 @@ fn a_branch_before_a_turn_back_is_within_what_is_stated() {
 #[test]
 fn a_height_that_leaves_little_is_not_the_only_one() {
     const LENGTH: f64 = 0.057_926_491_266_418_39;
-    let shape = FourierBody::new(
+    let object = fourier_object(
         &[LENGTH, 0.010_953_387_066_197_907, -0.001_156_933_855_718_921_2],
         &[0.0, 4.472_944_303_933_343e-5, 0.002_324_378_543_674_404],
+        [0.634_623_197_230_757_2, 0.000_903_435_894_561_247_5],
     );
-    let mass = PlanarMass::new(0.634_623_197_230_757_2, 0.000_903_435_894_561_247_5).unwrap();
-    let object = PlanarObject { shape: shape.unwrap(), mass, gravity: 9.81 };
     let palms = HarmonicPalms {
         centres: [1.006_661_315_861_070_7, 1.626_244_711_211_676_7],
         amplitudes: [0.093_626_854_235_395_71, 0.041_198_854_632_962_69],

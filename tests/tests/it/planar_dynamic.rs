@@ -1,7 +1,7 @@
 //! Dynamic reconstruction in the plane: the paper's vector fields, and motion from contacts and forces from no guess.
 
-use crate::planar_common::{errors, noise_level, options, scene, times};
-use recon::contact_kinematics::planar::{FourierBody, PairContact};
+use crate::planar_common::{errors, fourier_object, noise_level, options, scene, times};
+use recon::contact_kinematics::planar::PairContact;
 use recon::object_dynamics::planar::*;
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::*;
@@ -65,12 +65,11 @@ fn authors_vector_fields_are_the_simulation() {
 #[test]
 fn the_height_of_a_body_that_hardly_turns_is_found() {
     const LENGTH: f64 = 1.576_231_625_747_666_7;
-    let shape = FourierBody::new(
+    let object = fourier_object(
         &[LENGTH, 0.156_442_544_619_585_23, 0.071_232_264_773_866_71],
         &[0.0, 0.282_670_363_075_763_15, -0.048_835_539_960_379_53],
+        [358.674_929_266_991_7, 358.081_702_583_205_4],
     );
-    let mass = PlanarMass::new(358.674_929_266_991_7, 358.081_702_583_205_4).unwrap();
-    let object = PlanarObject { shape: shape.unwrap(), mass, gravity: 9.81 };
     let palms = HarmonicPalms {
         centres: [0.772_214_947_696_880_6, 1.286_973_851_976_536_8],
         amplitudes: [0.453_927_061_411_725_95, 0.183_178_204_075_936_16],
@@ -79,11 +78,15 @@ fn the_height_of_a_body_that_hardly_turns_is_found() {
     };
     let start = PlanarStart { phi0: 0.892_121_326_802_837_4, omega0: 0.423_471_238_841_459_04 };
     let run = simulate_prescribed(&object, &palms, start, &times(100.0, 8.0), 1e-12).unwrap();
-    let noise =
-        PlanarNoise { contact: 1e-3 * LENGTH, force: 0.01 * mass.mass() * object.gravity, torque: 0.0 };
+    let noise = PlanarNoise {
+        contact: 1e-3 * LENGTH,
+        force: 0.01 * object.mass.mass() * object.gravity,
+        torque: 0.0,
+    };
     for seed in 0..few_or_all(2, 20) {
         let log = noise.add_to(&run.log().unwrap(), seed).contact_log([0.0; 2]).unwrap();
-        let told = options(noise_level(noise.contact, noise.force, LENGTH), object.gravity, Some(mass));
+        let told =
+            options(noise_level(noise.contact, noise.force, LENGTH), object.gravity, Some(object.mass));
         let estimate = estimate_plane(&log, &told).unwrap();
         let off = errors(&estimate, log.truth().unwrap());
         assert!(estimate.reliability.is_reliable(), "{seed}: {:?}", estimate.reliability);
@@ -96,7 +99,7 @@ fn the_height_of_a_body_that_hardly_turns_is_found() {
 #[test]
 fn noise_of_levers_tells_no_spin_where_a_body_turns_back_at_the_end() {
     const LENGTH: f64 = 0.030_531_870_724_598_457;
-    let shape = FourierBody::new(
+    let object = fourier_object(
         &[
             LENGTH,
             0.002_899_364_602_244_509,
@@ -111,9 +114,8 @@ fn noise_of_levers_tells_no_spin_where_a_body_turns_back_at_the_end() {
             -0.000_445_074_190_101_237_16,
             6.795_854_972_005_88e-5,
         ],
+        [0.205_284_055_585_385_57, 7.344_123_776_062_459e-5],
     );
-    let mass = PlanarMass::new(0.205_284_055_585_385_57, 7.344_123_776_062_459e-5).unwrap();
-    let object = PlanarObject { shape: shape.unwrap(), mass, gravity: 9.81 };
     let palms = HarmonicPalms {
         centres: [0.791_984_760_139_220_9, 1.085_955_488_731_866],
         amplitudes: [0.452_004_770_289_515_97, 0.081_645_772_600_161_43],
@@ -122,8 +124,11 @@ fn noise_of_levers_tells_no_spin_where_a_body_turns_back_at_the_end() {
     };
     let start = PlanarStart { phi0: 0.263_616_103_128_891_8, omega0: 0.0 };
     let run = simulate_prescribed(&object, &palms, start, &times(250.0, 1.112), 1e-12).unwrap();
-    let noise =
-        PlanarNoise { contact: 0.01 * LENGTH, force: 0.01 * mass.mass() * object.gravity, torque: 0.0 };
+    let noise = PlanarNoise {
+        contact: 0.01 * LENGTH,
+        force: 0.01 * object.mass.mass() * object.gravity,
+        torque: 0.0,
+    };
     // Palms known as well as simulated ones are.
     let level = ContactNoiseLevel { floor: 1e-6, ..noise_level(noise.contact, noise.force, LENGTH) };
     for seed in [141_318, 180_203] {

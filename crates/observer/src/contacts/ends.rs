@@ -9,12 +9,11 @@ use super::chain::Chain;
 use super::equations::{Equations, Gradient};
 use super::problem::{Problem, Unknowns};
 use super::redrawn::{SOLVED, departure};
-use super::samples::deviations;
+use super::samples::{Deviations, at_nodes};
 use super::solve::{Covariances, Solved, Step, solve};
 use super::state::Tangent;
 use contact_kinematics::at_once;
-use glam::DVec3;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SVector;
 
 /// Deviations at which a spin is held to see what that costs: as many as an error is silent from; and, where it costs less than a share of their square, once
 /// more farther off, so often.
@@ -116,13 +115,13 @@ impl Reach {
 }
 
 impl Covariances<CONSTANTS> {
-    /// Widened to what motions in the plane reach whose spin is held off at an end or where it is known best, where that is farther than deviations say: where a model is linear, a motion that
-    /// costs as much as `c` more has no number that is more than `sqrt(c)` deviations off.
+    /// Widened to what motions in the plane reach whose spin is held off at an end or where it is known best, where that is farther than deviations say.
+    ///
+    /// Where a model is linear, a motion that costs as much as `c` more has no number that is more than `sqrt(c)` deviations off.
     pub(super) fn reaching(mut self, problem: &Problem, solved: &Solved<CONSTANTS>) -> Self {
-        let count = solved.unknowns.motions.len();
-        let own = &solved.unknowns.motions;
-        let known: Vec<_> =
-            own.iter().enumerate().map(|(j, own)| deviations(own, &solved.unknowns.body, j, &self)).collect();
+        let Unknowns { motions, body } = &solved.unknowns;
+        let count = motions.len();
+        let known = at_nodes(motions, body, &self);
         let of_node = |node: usize| {
             let at = SpinAt::new(&self.chain, node, count);
             let mut reach = Reach { motions: vec![[1.0; 4]; count], body: SVector::repeat(1.0) };
@@ -143,18 +142,21 @@ impl Covariances<CONSTANTS> {
         };
         let spin = |j: &usize| known[*j][2].y;
         let best = (0..count).min_by(|a, b| spin(a).total_cmp(&spin(b))).unwrap_or(0);
-        let (first, last) = at_once(|| of_node(0).larger(&of_node(best)), || of_node(count - 1));
+        let inside = (1..count - 1).contains(&best);
+        let (first, last) = at_once(
+            || if inside { of_node(0).larger(&of_node(best)) } else { of_node(0) },
+            || of_node(count - 1),
+        );
         let Reach { motions, body } = first.larger(&last);
-        let wider = SMatrix::from_diagonal(&body);
-        self.body = wider * self.body * wider;
+        self.widen_body(&body);
         self.beyond = motions;
         self
     }
 
     /// By how many times the deviations `known`, times what is allowed, other unknowns are off.
-    fn reached(&self, from: &Unknowns, to: &Unknowns, known: &[[DVec3; 4]], allowed: f64) -> Reach {
+    fn reached(&self, from: &Unknowns, to: &Unknowns, known: &[Deviations], allowed: f64) -> Reach {
         let share = |off: f64, of: f64| if of > 0.0 { off.abs() / (of * allowed) } else { 0.0 };
-        let of = |(j, known): (usize, &[DVec3; 4])| {
+        let of = |(j, known): (usize, &Deviations)| {
             let off = departure(from, to, j);
             std::array::from_fn(|i| {
                 (0..3).map(|axis| share(off[i][axis], known[i][axis])).fold(0.0, f64::max)

@@ -1,8 +1,8 @@
 //! What is different where all motion is in the plane of x and z: five numbers of a motion and five of a body are what they are.
 
 use super::body::{Body, CONSTANTS};
-use super::problem::{Beforehand, Problem, Units};
-use super::samples::{Deviations, deviations};
+use super::problem::{Beforehand, Problem, Units, Unknowns};
+use super::samples::{Deviations, at_nodes};
 use super::search::fine;
 use super::solve::Solved;
 use super::state::Tangent;
@@ -132,9 +132,8 @@ fn usual_spin(problem: &Problem, solved: &Solved<CONSTANTS>) -> f64 {
 /// Deviations of the spin at the nodes, rad/s.
 fn spins_unknown(problem: &Problem, solved: &Solved<CONSTANTS>) -> Option<Vec<f64>> {
     let covariances = solved.covariances(problem)?;
-    let body = &solved.unknowns.body;
-    let motions = solved.unknowns.motions.iter().enumerate();
-    Some(motions.map(|(j, motion)| deviations(motion, body, j, &covariances)[2].y).collect())
+    let Unknowns { motions, body } = &solved.unknowns;
+    Some(at_nodes(motions, body, &covariances).iter().map(|of| of[2].y).collect())
 }
 
 /// What conditions are off by for it at each sample of the record, m/s, and by how much that is another number than before, over the deviation that

@@ -9,12 +9,12 @@ use super::body::CONSTANTS;
 use super::feet::Share;
 use super::problem::{Problem, Unknowns};
 use super::record::{Contact, Interval, Record, Wrench};
-use super::samples::deviations;
+use super::samples::at_nodes;
 use super::solve::{Covariances, Solved, solve};
 use crate::random::Normal;
 use contact_kinematics::at_once;
 use glam::DVec3;
-use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, SVector, Vector6};
 
 /// Deviations of logarithms of constants, and of turns in rad, up to which nothing is looked at: what is beyond first order adds a hundredth to a
 /// variance there.
@@ -59,10 +59,8 @@ impl Covariances<CONSTANTS> {
             let spread = mean(&|at| at.body.from(&own.body)[i].powi(2));
             (spread / (AMOUNT * AMOUNT) / self.body[(i, i)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
         });
-        let wider = SMatrix::from_diagonal(&wider);
-        self.body = wider * self.body * wider;
-        let known: Vec<_> =
-            (0..own.motions.len()).map(|j| deviations(&own.motions[j], &own.body, j, &self)).collect();
+        self.widen_body(&wider);
+        let known = at_nodes(&own.motions, &own.body, &self);
         let beyond = |(j, known): (usize, &[DVec3; 4])| {
             let spread = |i: usize| mean(&|at| (departure(own, at, j)[i] / known[i]).length_squared());
             std::array::from_fn(|i| (spread(i) / (3.0 * AMOUNT * AMOUNT)).max(1.0).sqrt())

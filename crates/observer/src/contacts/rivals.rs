@@ -55,7 +55,7 @@ pub(super) type Rival = (Solved<CONSTANTS>, Vec<SVector<f64, CONSTANTS>>);
 /// A motion that was decided on.
 pub(super) struct Decided {
     pub(super) solved: Solved<CONSTANTS>,
-    /// Where there were others to compare it with.
+    /// Of a linear model, in space, where there were others to compare it with.
     pub(super) covariances: Option<Covariances<CONSTANTS>>,
     /// Those that cannot be ruled out, nearly as probable and farther than deviations reach, the most probable first.
     pub(super) others: Vec<Rival>,
@@ -141,23 +141,23 @@ fn among(problem: &Problem, best: Weighed, others: Vec<Weighed>) -> Option<Decid
     if others.is_empty() {
         return Some(Decided::alone(solved));
     }
-    let covariances = solved.covariances(problem)?;
-    // In the plane as far as motions reach that are held off at their ends: beyond that another one is no part of the same valley.
-    let reaching =
-        if problem.planar { Some(solved.covariances(problem)?.reaching(problem, &solved)) } else { None };
-    let mut farthest = 0.0;
-    let mut open = Vec::new();
-    for Weighed { rival, surprise } in others {
-        let dearer = (surprise - least).min(rival.0.equations.cost - solved.equations.cost);
-        let apart = apart(&solved, &rival.0, reaching.as_ref().unwrap_or(&covariances));
-        if dearer < MORE_PROBABLE && apart > BEYOND {
-            farthest = apart.max(farthest);
-            open.push(rival);
-        }
+    let mut covariances = solved.covariances(problem)?;
+    let likely = |of: &Weighed| {
+        (of.surprise - least).min(of.rival.0.equations.cost - solved.equations.cost) < MORE_PROBABLE
+    };
+    let mut open: Vec<Rival> = others.into_iter().filter(likely).map(|of| of.rival).collect();
+    open.retain(|(other, _)| apart(&solved, other, &covariances) > BEYOND);
+    // In the plane one is part of the same valley as far as motions reach whose spin is held off.
+    if problem.planar && !open.is_empty() {
+        covariances = covariances.reaching(problem, &solved);
+        open.retain(|(other, _)| apart(&solved, other, &covariances) > BEYOND);
     }
+    let farthest = open.iter().map(|(other, _)| apart(&solved, other, &covariances)).fold(0.0, f64::max);
     open.sort_by(|a, b| a.0.equations.cost.total_cmp(&b.0.equations.cost));
     let reason = (!open.is_empty()).then_some(Reason::Ambiguous { apart: farthest });
-    Some(Decided { solved, covariances: Some(covariances), others: open, open: reason })
+    // What is reported of the plane is widened at its end.
+    let covariances = if problem.planar { None } else { Some(covariances) };
+    Some(Decided { solved, covariances, others: open, open: reason })
 }
 
 /// Whether the less probable one of two motions cannot be ruled out, at odds of a thousand to one: by how many deviations it is another one.

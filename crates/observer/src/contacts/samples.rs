@@ -24,8 +24,7 @@ pub(super) fn at_all<const P: usize>(
     covariances: &Covariances<P>,
 ) -> Vec<(Motion, Deviations)> {
     let own = problem.at_samples(found);
-    let known: Vec<Deviations> =
-        (0..own.len()).map(|j| deviations(&own[j], &found.body, j, covariances)).collect();
+    let known = at_nodes(&own, &found.body, covariances);
     let mut all = along_links(
         log,
         problem,
@@ -37,6 +36,15 @@ pub(super) fn at_all<const P: usize>(
         all.iter_mut().for_each(|(_, deviations)| plane::flatten(deviations, log.across));
     }
     all
+}
+
+/// Deviations at all nodes, which have these motions.
+pub(super) fn at_nodes<const P: usize>(
+    motions: &[Motion],
+    body: &Body,
+    covariances: &Covariances<P>,
+) -> Vec<Deviations> {
+    motions.iter().enumerate().map(|(j, motion)| deviations(motion, body, j, covariances)).collect()
 }
 
 /// Covariances of the centre of mass and the turn at each sample, world axes: their diagonals are what [`at_all`] has as deviations.

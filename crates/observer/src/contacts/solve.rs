@@ -129,6 +129,12 @@ impl<const P: usize> Covariances<P> {
         self.beyond.get(j).copied().unwrap_or([1.0; 4])
     }
 
+    /// Makes deviations of the body's constants larger by factors.
+    pub(super) fn widen_body(&mut self, by: &SVector<f64, P>) {
+        let wider = SMatrix::from_diagonal(by);
+        self.body = wider * self.body * wider;
+    }
+
     /// Whether they are not those of a linear model of noise alone.
     pub(super) fn are_wider(&self) -> bool {
         !self.beyond.is_empty() || !self.errors.is_empty()

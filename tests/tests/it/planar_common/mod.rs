@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests, where a panic is the report")]
 #![allow(dead_code, reason = "each test file uses its part of the shared scenes")]
 
-use recon::object_dynamics::planar::{PlanarMass, PlanarTruth};
+use recon::contact_kinematics::planar::FourierBody;
+use recon::object_dynamics::planar::{PlanarMass, PlanarObject, PlanarTruth};
 use recon::observer::contacts::ContactNoiseLevel;
 use recon::observer::planar::{PlaneEstimate, PlaneOptions};
 
@@ -18,6 +19,12 @@ pub(crate) fn times(rate: f64, duration: f64) -> Vec<f64> {
 pub(crate) fn noise_level(contact: f64, force: f64, length: f64) -> ContactNoiseLevel {
     let floor = 3e-5 * (9.81 * length).sqrt();
     ContactNoiseLevel { contact, force_fixed: force, force_share: 0.0, impulse: None, floor }
+}
+
+/// A body by the harmonics of its radius function (m), its mass and its moment of inertia.
+pub(crate) fn fourier_object(cosines: &[f64], sines: &[f64], mass: [f64; 2]) -> PlanarObject<FourierBody> {
+    let shape = FourierBody::new(cosines, sines).unwrap();
+    PlanarObject { shape, mass: PlanarMass::new(mass[0], mass[1]).unwrap(), gravity: 9.81 }
 }
 
 /// What is told of two palms without friction.
