@@ -8,6 +8,9 @@ use recon::observer::planar::{PlaneEstimate, PlaneOptions, estimate_plane};
 /// Deviations beyond which an error that nothing warned of is silent.
 pub(crate) const SILENT: f64 = 5.0;
 
+/// Deviations from which on a constant that was taken as known is named: odds of two in a million.
+const NAMED: f64 = 4.75;
+
 /// Microseconds; none where there is an error, then the errors where it is relied on.
 type Run = (f64, Option<Option<[f64; 5]>>);
 
@@ -73,8 +76,14 @@ impl Tally {
         let mean =
             if self.numbers > 0.0 { format!("{:.2}", self.squares / self.numbers) } else { "-".to_owned() };
         let refused = if self.refused > 0 { format!(" ({} errors)", self.refused) } else { String::new() };
-        let most = self.told.iter().copied().fold(0.0, f64::max);
-        let told = if most > 0.0 { format!(" (told to {most:.1})") } else { String::new() };
+        self.told.sort_by(f64::total_cmp);
+        // None states a deviation of what is no constant.
+        let powers: Vec<String> =
+            self.told.iter().map(|of| format!("{:.0}", 100.0 * below(of - NAMED))).collect();
+        let told = match self.told.last() {
+            Some(most) if *most > 0.0 => format!(" (power {} %)", powers.join(", ")),
+            _ => String::new(),
+        };
         format!(
             "{} | {}{refused} | {}{told} | {mean} | {place} | {:.0}",
             self.runs,
@@ -83,6 +92,16 @@ impl Tally {
             self.microseconds / self.samples.max(1.0)
         )
     }
+}
+
+/// How probable it is that a standard normal number is below this one: by Simpson's rule, to 1e-6.
+fn below(number: f64) -> f64 {
+    const PARTS: u32 = 200;
+    let step = number.clamp(-9.0, 9.0) / f64::from(PARTS);
+    let density = |i: u32| (-0.5 * (f64::from(i) * step).powi(2)).exp();
+    let weight = |i: u32| if i == 0 || i == PARTS { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+    let sum: f64 = (0..=PARTS).map(|i| weight(i) * density(i)).sum();
+    0.5 + sum * step / 3.0 / std::f64::consts::TAU.sqrt()
 }
 
 /// The largest of the errors in their deviations, the sum of their squares, how many there are; and the largest of the place over the size.

@@ -48,8 +48,8 @@ pub(crate) fn main() -> Result<(), Failure> {
     println!("| all | | | {} |", all.told());
     starts(seed)?;
     println!(
-        "\nWrong constants and broken logs, known body, noise {} % of the size. Told to: of silent runs, how many of the deviations that the test of that \
-         constant states it is at most; beyond 4.75 it would be named.\n",
+        "\nWrong constants and broken logs, known body, noise {} % of the size. Power: of each silent run, how probable it was, by the deviation that \
+         the run itself states of that constant, that it would be named (4.75 of these, odds of two in a million).\n",
         100.0 * NOISE_OF_WRONG
     );
     println!(

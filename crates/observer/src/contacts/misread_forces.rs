@@ -45,7 +45,7 @@ pub(super) fn misread_forces(
     let steady = steady(contacts);
     let off = |palm: usize| -> Vec<(usize, Off)> {
         let (way, noise) = forces(contacts, times, palm, &steady);
-        way.off(noise).into_iter().map(|off| (palm, off)).collect()
+        way.off(noise, false).into_iter().map(|off| (palm, off)).collect()
     };
     let off: Vec<_> = of_each(times.len(), &palms, off).into_iter().flatten().collect();
     if off.is_empty() {
@@ -59,7 +59,7 @@ pub(super) fn misread_forces(
         let h = 0.5 * (times[after] - times[before]);
         let read = contacts[k].iter().find(|contact| contact.palm == palm)?;
         let thrown = OF_KINK * read.f.distance(value) * h * h / mass;
-        let bent = ways.iter().map(|way| way.left_at(k)).fold(0.0, f64::max);
+        let bent = ways.iter().map(|way| way.left_at_sample(k)).fold(0.0, f64::max);
         let shows = DEVIATIONS * deviation + bent >= SHOWN * thrown;
         (read.repeated || !shows).then_some(MisreadForce { sample: k, palm, f: value, around })
     };

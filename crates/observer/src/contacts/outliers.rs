@@ -38,7 +38,10 @@ pub(super) fn misread(
                 if around > 0.0 && deviation > 0.0 { (deviation / around).powi(2) } else { f64::INFINITY };
             Misread { sample, palm, c: value, samples: squares.recip().min(as_around) }
         };
-        way.off(deviation).into_iter().map(one).collect()
+        // Friction that sets in or lets go of a contact bends its way at once.
+        let mut of_palm = contacts.iter().flatten().filter(|contact| contact.palm == palm);
+        let slides = of_palm.all(|contact| contact.frictionless);
+        way.off(deviation, slides).into_iter().map(one).collect()
     };
     let palms: Vec<usize> = (0..palms).collect();
     let of_palms: Vec<Vec<Misread>> = of_each(times.len(), &palms, of_palm);
@@ -192,10 +195,33 @@ pub(super) mod tests {
         };
         let mut of_fifty =
             |off: f64, bend: f64, as_these: &[usize]| (0..50).filter(|_| told(off, bend) == as_these).count();
-        assert!(of_fifty(10.0 * DEVIATION, 0.0, &[45]) > 25);
+        assert!(of_fifty(10.0 * DEVIATION, 0.0, &[45]) > 45);
         assert!(of_fifty(0.0, 0.0, &[]) == 50);
         // Where the way bends as much, it may be that.
         assert!(of_fifty(10.0 * DEVIATION, 4.0 * DEVIATION, &[]) > 45);
+    }
+
+    /// Of two that are off within three samples each puts the other's cubic, and the line that leads to it, elsewhere.
+    #[test]
+    fn contacts_that_are_off_side_by_side_are_told_by_noise_alone() {
+        const DEVIATION: f64 = 1e-4;
+        let mut normal = Normal::seeded(5);
+        let mut told = |off: &[(usize, f64)]| {
+            let mut log = run(1.0, 0.0, 0.0);
+            for (k, contact) in log.iter_mut().enumerate().map(|(k, contacts)| (k, &mut contacts[0])) {
+                // A parabola of 20 deviations a step at the end.
+                let way = (k as f64).powi(2) / 6.0;
+                contact.c = DVec3::new(way + normal.draw(), normal.draw(), 0.0) * DEVIATION;
+            }
+            off.iter().for_each(|&(k, off)| log[k][0].c.y += off * DEVIATION);
+            let times: Vec<f64> = (0..log.len()).map(|k| k as f64 * STEP).collect();
+            misread(&log, &times, DEVIATION, G).iter().map(|of| of.sample).collect::<Vec<_>>()
+        };
+        let mut of_fifty =
+            |off: &[(usize, f64)], as_these: &[usize]| (0..50).filter(|_| told(off) == as_these).count();
+        assert_eq!(of_fifty(&[], &[]), 50);
+        assert!(of_fifty(&[(8, 12.0)], &[8]) > 45);
+        assert!(of_fifty(&[(8, 16.0), (6, 12.0)], &[6, 8]) > 45);
     }
 
     /// A third sample that is off by as much leads to the first along a parabola.

@@ -1,31 +1,15 @@
-//! How a reading of a palm goes on from sample to sample, and which of its values leave that way.
+//! How a reading of a palm goes on from sample to sample.
 
+mod astray;
+
+pub(super) use astray::{FEWEST, MEDIAN_LENGTH, MOST, OFF, Off, TOGETHER};
 use glam::DVec3;
 
-/// Deviations from which on a value is off: of what the motion itself leaves of a cubic at most samples, and of what noise does.
-pub(super) const OFF: f64 = 8.0;
-const NOISE: f64 = 4.5;
 /// Values on either side that tell where one should be, and among how many samples they are looked for.
 const BESIDE: usize = 2;
 const AMONG: usize = 6;
 /// Samples on either side over which the same palms must be touched: a landing bends the way of all contacts.
 pub(super) const STEADY: usize = 3;
-/// Share of the spread of all values of a palm that one is off by at least: at 3e-4 two of 24 logs as good as exact had right contacts put elsewhere, where an
-/// object turns within a sample or two.
-const NOTABLE: f64 = 3e-3;
-/// Neighbours that may be off together: more are a motion that turns sharply.
-pub(super) const TOGETHER: usize = 2;
-/// Share of a palm's values beyond which they are not outliers but what the sensor is like.
-pub(super) const MOST: f64 = 0.05;
-/// Root of one and the squared weights of a cubic through two values on either side, evenly spaced: noise of what a value is off it by over that of one.
-const OF_CUBIC: f64 = 1.394;
-/// Fewest values of a palm whose scatter can be told.
-pub(super) const FEWEST: usize = 20;
-/// Values of a palm that tell the scatter of all of them, at most.
-const TELL: usize = 5000;
-/// Median of the length of a vector of two standard normal numbers.
-pub(super) const MEDIAN_LENGTH: f64 = 1.177_410_022_515_474_7;
-
 /// What others say that a value is, in its units, and the sum of the squares of what they count by.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Told {
@@ -36,16 +20,6 @@ pub(super) struct Told {
 /// Places of seven values whose smaller one comes first, one after the other, until the fourth is their median.
 const EXCHANGES: [[usize; 2]; 13] =
     [[0, 5], [0, 3], [1, 6], [2, 4], [0, 1], [3, 5], [2, 6], [2, 3], [3, 6], [4, 5], [1, 4], [1, 3], [3, 4]];
-
-/// A value that is off.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Off {
-    pub(super) sample: usize,
-    /// What others say that it is.
-    pub(super) told: Told,
-    /// How far the same puts values around it from what they are, at most.
-    pub(super) around: f64,
-}
 
 /// The first values of some, by number, of which a polynomial goes through four at most.
 #[derive(Default)]
@@ -104,61 +78,6 @@ impl Way {
         self.repeated.push(repeated);
     }
 
-    /// Whether each value is the one before once more, while those before and after it change: none is where many are.
-    fn stale(&self) -> Vec<bool> {
-        let count = self.points.len();
-        let changes = |j: usize| j + 1 < count && self.points[j] != self.points[j + 1];
-        let one = |j: usize| self.repeated[j] && self.steady[j] && j > 1 && changes(j) && changes(j - 2);
-        let all: Vec<bool> = (0..count).map(one).collect();
-        let many = all.iter().filter(|stale| **stale).count() as f64 > MOST * count as f64;
-        if many { vec![false; count] } else { all }
-    }
-
-    /// The values that are off; `deviation` is that of one.
-    pub(super) fn off(&self, deviation: f64) -> Vec<Off> {
-        let count = self.points.len();
-        if count < FEWEST {
-            return Vec::new();
-        }
-        let mean = self.points.iter().sum::<DVec3>() / count as f64;
-        let square = self.points.iter().map(|point| point.distance_squared(mean)).sum::<f64>();
-        let spread = (square / count as f64).sqrt();
-        // Of long logs some tell the scatter as well as all do.
-        let every = count.div_ceil(TELL).max(1);
-        let limit = |left: &dyn Fn(usize) -> f64| {
-            let mut scatter: Vec<f64> =
-                (0..count).step_by(every).map(left).filter(|left| *left > 0.0).collect();
-            let middle = scatter.len() / 2;
-            let usual = if scatter.is_empty() {
-                f64::INFINITY
-            } else {
-                *scatter.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN_LENGTH
-            };
-            // Noise makes no tails; a motion that bends does.
-            let bent = (usual * usual - deviation * deviation).max(0.0).sqrt();
-            (NOISE * deviation).max(OFF * bent).max(NOTABLE * spread)
-        };
-        // Medians are not misled by a few that are off, but by the bend of the way; cubics the other way round.
-        let left = |j: usize| self.points[j].distance(self.usual(j));
-        let most = limit(&left);
-        let stale = self.stale();
-        let suspected: Vec<bool> = (0..count).map(|j| stale[j] || self.steady[j] && left(j) > most).collect();
-        let left = |j: usize| self.told(j, &suspected).map_or(0.0, |told| self.left(j, &told));
-        let most = limit(&left);
-        let is_off = |&j: &usize| {
-            let limit = most + self.bends[j];
-            stale[j] || suspected[j] && left(j) > limit && !self.goes_on(j, OF_CUBIC * limit)
-        };
-        let off: Vec<usize> = (0..count).filter(is_off).collect();
-        let together = off.chunk_by(|a, b| *b == a + 1).filter(|run| run.len() <= TOGETHER);
-        let one = |&j: &usize| {
-            let told = self.told(j, &suspected)?;
-            Some(Off { sample: self.samples[j], told, around: self.around(j, &suspected) })
-        };
-        let off: Vec<_> = together.flatten().filter_map(one).collect();
-        if off.len() as f64 > MOST * count as f64 { Vec::new() } else { off }
-    }
-
     /// How far values around one are, at most, from what others as far from them as those that tell of this one say.
     fn around(&self, j: usize, suspected: &[bool]) -> f64 {
         let by = self.beside(j, suspected);
@@ -172,10 +91,14 @@ impl Way {
     }
 
     /// How far the value of a sample is from what those around it say, all of them; infinite where they are too few, nothing where there is none.
-    pub(super) fn left_at(&self, sample: usize) -> f64 {
+    pub(super) fn left_at_sample(&self, sample: usize) -> f64 {
         let Ok(j) = self.samples.binary_search(&sample) else { return 0.0 };
-        let told = self.told(j, &vec![false; self.points.len()]);
-        told.map_or(f64::INFINITY, |told| self.left(j, &told))
+        self.left_at(j, &vec![false; self.points.len()]).unwrap_or(f64::INFINITY)
+    }
+
+    /// How far a value is from what those beside it say that are not `out`.
+    fn left_at(&self, j: usize, out: &[bool]) -> Option<f64> {
+        self.told(j, out).map(|told| self.left(j, &told))
     }
 
     /// The median of the values around one, at an end carried on to it by the slope of medians.
@@ -199,24 +122,6 @@ impl Way {
             (of[i], of[j]) = (of[i].min(of[j]), of[i].max(of[j]));
         }
         of[STEADY]
-    }
-
-    /// Whether a contact is where the way from one side leads, to within so many metres, by the line through two contacts there or the parabola through three;
-    /// where there is a fourth, by that with it in place of the third as well: a third that is off by as much as this one leads to it.
-    ///
-    /// Where the curvature of the object jumps, its contact changes its speed from one sample to the next: nothing that is smooth over both sides leads there.
-    fn goes_on(&self, j: usize, within: f64) -> bool {
-        let near = |other: &usize| self.samples[*other].abs_diff(self.samples[j]) <= AMONG;
-        // Those that may be off themselves as well: so few in a row lead to no other one.
-        let before: Vec<usize> = (0..j).rev().take(AMONG).filter(near).collect();
-        let after: Vec<usize> = (j + 1..self.points.len()).take(AMONG).filter(near).collect();
-        let leads = |few: &[usize]| self.through(few, j).value.distance(self.points[j]) <= within;
-        [&before[..], &after].iter().any(|side| match *side {
-            [a, b, c, d, ..] => leads(&[*a, *b]) || (leads(&[*a, *b, *c]) && leads(&[*a, *b, *d])),
-            [a, b, c] => leads(&[*a, *b]) || leads(&[*a, *b, *c]),
-            [a, b] => leads(&[*a, *b]),
-            _ => false,
-        })
     }
 
     /// The polynomial through some contacts at the time of another one.
