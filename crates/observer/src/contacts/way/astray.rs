@@ -135,7 +135,7 @@ impl Way {
     fn changes_speed(&self, j: usize, off: f64, out: &[bool]) -> bool {
         let beside = self.beside(j, out);
         let [a, b, c, d] = beside.of;
-        if beside.count < 2 * BESIDE || a > j || c < j {
+        if beside.count < 2 * BESIDE || b > j || c < j {
             return true;
         }
         // The nearer ones come first on either side.
