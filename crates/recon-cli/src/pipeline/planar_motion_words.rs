@@ -1,6 +1,6 @@
 //! A motion that was estimated in the plane, in words and numbers for people.
 
-use super::any_palms_words::{fit, modes, neutral, percent, told, wider};
+use super::any_palms_words::{fit, modes, neutral, relied, told, wider};
 use super::planar_motion::ENOUGH;
 use super::sensor_words::{explained, suspects};
 use recon::observer::contacts::ContactNoiseLevel;
@@ -25,9 +25,9 @@ pub(super) fn verdict(estimate: &PlaneEstimate, share: f64, known_body: bool) ->
         "mass and inertia are learned from the log"
     };
     let text = format!(
-        "The fit settled, noise explains what is left (chi-squared {:.2} a condition), and the motion is relied on at {} of the samples; {body}.{}",
+        "The fit settled, noise explains what is left (chi-squared {:.2} a condition), {}; {body}.{}",
         estimate.evidence.misfit,
-        percent(share),
+        relied(share),
         wider(&estimate.evidence),
     );
     Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
