@@ -52,21 +52,21 @@ pub(super) fn verdict(estimate: &ContactEstimate, checks: &Checks) -> Verdict {
         None => format!("of the three second moments of the inertia {} learned", learned(estimate)),
     };
     let text = format!(
-        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), {}; {body}.{}",
+        "The fit settled, noise explains what is left (chi-squared {misfit:.2} a condition), and {}; {body}.{}",
         relied(share),
         wider(&estimate.evidence),
     );
     Verdict { level: if share < ENOUGH { Level::Caution } else { Level::Good }, text }
 }
 
-/// At which share of the samples a motion is relied on that nothing contradicts; where it is at none, what would tell it.
+/// At which share of the samples a motion is relied on that nothing contradicts; where it is at none, why.
 pub(super) fn relied(share: f64) -> String {
-    if share > 0.0 {
-        return format!("and the motion is relied on at {} of the samples", percent(share));
-    }
-    "but the readings do not tell the motion: at no sample is it known so well that its deviations hold, and none is relied on (more would be \
-     told by a longer log, or by one in which the object turns)"
-        .to_owned()
+    let why = if share > 0.0 {
+        ""
+    } else {
+        ": at none is it known so well that its deviations hold (a longer log, or one in which the object turns, tells more)"
+    };
+    format!("the motion is relied on at {} of the samples{why}", percent(share))
 }
 
 /// What makes deviations wider than the stated noise does: words to add to a verdict, none where nothing does.

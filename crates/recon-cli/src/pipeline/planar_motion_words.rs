@@ -25,7 +25,7 @@ pub(super) fn verdict(estimate: &PlaneEstimate, share: f64, known_body: bool) ->
         "mass and inertia are learned from the log"
     };
     let text = format!(
-        "The fit settled, noise explains what is left (chi-squared {:.2} a condition), {}; {body}.{}",
+        "The fit settled, noise explains what is left (chi-squared {:.2} a condition), and {}; {body}.{}",
         estimate.evidence.misfit,
         relied(share),
         wider(&estimate.evidence),

@@ -264,4 +264,5 @@ fn bad_input_is_refused() {
     let run = scratch.run(&known("millimetres.csv"));
     assert_eq!(run.code, Some(4), "{}{}", run.stdout, run.stderr);
     assert!(run.stdout.contains("relied on at 0 % of") && run.stdout.contains("m (lengths are in metres)"));
+    assert!(run.stdout.contains("at none is it known so well that its deviations hold"));
 }
