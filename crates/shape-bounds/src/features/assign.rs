@@ -9,6 +9,7 @@ use super::found::{FeatureKind, FeatureOptions, FeatureRun, Features};
 use super::moments::{Sums, Units};
 use crate::noise::NoisyContact;
 use crate::noise::quantile::length3;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Odds at which a contact on a place departs from it so far that it is taken to be on none.
 const NOWHERE: f64 = 1e-3;
@@ -46,6 +47,13 @@ pub(super) fn assigned(
         let cut = found.runs_of(stretch, &places, &all, (units, options));
         runs.extend(cut.map(|run| FeatureRun { curve: now.curve, first: run.first + now.first, ..run }));
         k += count;
+    }
+    for k in 1..runs.len() {
+        if let Some(border) = found.border(&curves[runs[k].curve], [runs[k - 1], runs[k]], units.size) {
+            let end = runs[k].first + runs[k].count;
+            runs[k - 1].count = border - runs[k - 1].first;
+            (runs[k].first, runs[k].count) = (border, end - border);
+        }
     }
     runs
 }
@@ -87,6 +95,37 @@ impl Features {
                 m.dot(way).powi(2) / variance + (n - m).length_squared() / (normal_variance + turn)
             }
         }
+    }
+
+    /// Where the later one of two runs begins, a face and a smooth piece beside each other on a `curve`: they were cut when the face was known by this run alone. At most half of
+    /// a run changes sides.
+    fn border(&self, curve: &[NoisyContact], runs: [FeatureRun; 2], size: f64) -> Option<usize> {
+        let smooth = |run: FeatureRun| run.kind == Some(FeatureKind::Smooth);
+        let [before, after] = runs;
+        let (face, sign) = match runs {
+            [face, other] if smooth(other) => (face, 1.0),
+            [other, face] if smooth(other) => (face, -1.0),
+            _ => return None,
+        };
+        if before.curve != after.curve || face.kind != Some(FeatureKind::Face) {
+            return None;
+        }
+        let on = On { kind: FeatureKind::Face, index: face.feature? };
+        let gain = |contact: &NoisyContact| {
+            let [_, variance] = Sums::variances(contact, size);
+            // Beforehand a normal of the smooth piece is anywhere in a quarter turn.
+            let anywhere = (FRAC_PI_2 / (TAU * variance).sqrt()).ln().max(0.0);
+            sign * (anywhere - self.departs(contact, on, size))
+        };
+        let (low, high) = (before.first + before.count.div_ceil(2), after.first + after.count / 2);
+        let (mut gained, mut best) = (0.0, (0.0, low));
+        for k in low..high {
+            gained += gain(&curve[k]);
+            if gained > best.0 {
+                best = (gained, k + 1);
+            }
+        }
+        Some(best.1)
     }
 
     /// The most probable place of each contact, by number in `all`; that number's end where it is on none.

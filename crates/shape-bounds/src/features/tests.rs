@@ -51,6 +51,20 @@ fn corners_and_faces_of_a_cube_and_a_wedge_are_told() {
     }
 }
 
+/// A run alone tells its face worse than all runs on it do, and where it ends likewise.
+#[test]
+fn faces_end_where_rounded_edges_begin() {
+    let mut told = [0; 5];
+    let body = TouchedBody::cuboid(DVec3::new(0.5, 0.4, 0.45), 0.12);
+    for seed in 0..8 {
+        let touched = body.touched(&HOW, 200, 1e-2, seed);
+        let of_faces = confusion(&touched, &found(&touched.curves))[FeatureKind::Face as usize];
+        told = std::array::from_fn(|k| told[k] + of_faces[k]);
+    }
+    let all: usize = told.iter().sum();
+    assert!((told[FeatureKind::Smooth as usize] as f64) < 0.045 * all as f64, "{told:?}");
+}
+
 #[test]
 fn a_smooth_body_has_none() {
     for (seed, noise) in [(1, 1e-3), (2, 1e-2), (3, 0.0)] {
