@@ -87,7 +87,7 @@ impl Way {
                 near.all(|i| suspected[i] || left[i] <= left[j])
             };
             let is_alone = |&j: &usize| {
-                !suspected[j] && self.steady[j] && is_largest(j) && self.leaves(j, left[j], most, suspected)
+                !suspected[j] && self.steady[j] && self.leaves(j, left[j], most, suspected) && is_largest(j)
             };
             // All around are off as much where the way itself turns within few samples.
             let stands_out = |&j: &usize| {
