@@ -21,7 +21,7 @@ type Failure = Box<dyn Error>;
 const PUSHES: u32 = 50;
 /// Runs of each shape.
 const RUNS: u64 = 6;
-const SEEDS: [(&str, u64); 2] = [("Calibration", 7000), ("Proof", 9000)];
+const SEEDS: [(&str, u64); 2] = [("Calibration", 7000), ("Proof", 29000)];
 
 pub(crate) fn main() -> Result<(), Failure> {
     let mut words = super::words().map(|w| w.parse::<u64>());

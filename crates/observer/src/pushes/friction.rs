@@ -11,6 +11,10 @@ const FEWEST_WINDOWS: usize = 10;
 const FEWEST_PUSHES: usize = 4;
 /// Deviations at first.
 const FIRST: f64 = 0.05;
+/// Deviation of friction from push to push before any was seen, in shares of it, and the pushes that this counts as: from some fifteen that
+/// slide their scatter alone is at times nothing, and then friction would be the same for all time (Chung et al. 2013).
+const OF_PUSH: f64 = 0.06;
+const SEEN: f64 = 4.0;
 /// Least deviation of a slip, in speeds of the finger, and of a ratio: that of a face known to half a degree.
 const LEAST: f64 = 0.01;
 /// Largest deviation of a slip.
@@ -94,7 +98,7 @@ fn maximise(pushes: &[Vec<Window>], odds: &[Vec<Odds>], sliding: &[Sliding], com
     }
     let [friction, by_slip] = line.fitted(sliding);
     let common = Common { friction: friction.max(LEAST), by_slip, ..common };
-    let (mut of_push, mut slides) = (0.0, 0.0);
+    let (mut of_push, mut slides) = (SEEN * (OF_PUSH * common.friction).powi(2), SEEN);
     for s in sliding.iter().filter(|s| s.slides()) {
         let (own, open) = s.own(&common);
         // Outliers count less here too.
