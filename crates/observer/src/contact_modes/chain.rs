@@ -1,14 +1,10 @@
 //! One contact at one coefficient of friction: probabilities of off, of the speeds of sliding and of the ratios of sticking.
 
-use super::bins::Bins;
-use super::contact::{Force, SlipRead};
-use super::density::Ratio;
-use super::foretold::Foretold;
-use super::friction::Cell;
+use super::likelihood::Likelihood;
 use super::steps::{EDGE, PACES, SPEEDS, Steps};
 
-/// Probability below which a cell is left out when the largest likelihood is looked for; it may still win by [`Chain::in_logs`].
-const FAINT: f64 = 1e-30;
+/// Sum of what is left of all cells below which factors have lost what counts, and logarithms are taken.
+const FAINT: f64 = 1e-200;
 
 /// Speed and ratio change slowly: they are what the modes remember. Were they drawn anew at each sample, the same evidence would
 /// count again and again. Probabilities sum to one; what they are scaled by is kept as a logarithm by the caller.
@@ -32,85 +28,6 @@ impl Clone for Chain {
         (self.off, self.edge) = (other.off, other.edge);
         self.speeds.clone_from(&other.speeds);
         self.ratios.clone_from(&other.ratios);
-    }
-}
-
-/// Log-likelihoods of a sample in every cell, which are the same at all paces.
-#[derive(Clone, Debug)]
-pub(super) struct Likelihood {
-    pub(super) off: f64,
-    pub(super) edge: f64,
-    pub(super) speeds: Vec<f64>,
-    pub(super) ratios: Vec<f64>,
-}
-
-impl Likelihood {
-    /// Of nothing that was read.
-    pub(super) fn none(steps: &Steps) -> Self {
-        Self::same(steps, 0.0, 0.0)
-    }
-
-    /// The same wherever it touches.
-    pub(super) fn same(steps: &Steps, off: f64, touches: f64) -> Self {
-        Self {
-            off,
-            edge: touches,
-            speeds: vec![touches; SPEEDS],
-            ratios: vec![touches; steps.ratios.count()],
-        }
-    }
-
-    /// The same, in place.
-    fn set(&mut self, off: f64, touches: f64) {
-        (self.off, self.edge) = (off, touches);
-        self.speeds.fill(touches);
-        self.ratios.fill(touches);
-    }
-
-    /// Of a force, at the friction of this cell, without the factor that all modes that touch have in common.
-    pub(super) fn of_force(&mut self, steps: &Steps, force: &Force, cell: &Cell) {
-        match force {
-            Force::Silent => self.set(0.0, 0.0),
-            Force::Off => self.set(0.0, f64::NEG_INFINITY),
-            Force::Touches => self.set(f64::NEG_INFINITY, 0.0),
-            Force::Presses { ratio, touching, off, foretold } => {
-                self.of_ratio(steps, ratio, cell, foretold);
-                self.off = off - touching;
-            }
-        }
-    }
-
-    /// Of a slip.
-    pub(super) fn of_slip(&mut self, read: &SlipRead, speeds: &Bins) {
-        let SlipRead { slip, turn, weight } = read;
-        self.off = weight * slip.log_off();
-        self.edge = weight * slip.log_still();
-        self.ratios.fill(weight * slip.log_sticking());
-        for (k, log) in self.speeds.iter_mut().enumerate() {
-            let (speed, spread) = (speeds.middle(k), speeds.variance(k));
-            *log = weight * slip.log_sliding(speed, spread, *turn);
-        }
-    }
-
-    /// With that of a slip beside it, of which all ratios are one cell.
-    pub(super) fn add_slip(&mut self, by_slip: &Self) {
-        self.off += by_slip.off;
-        self.edge += by_slip.edge;
-        self.speeds.iter_mut().zip(&by_slip.speeds).for_each(|(log, slip)| *log += slip);
-        let sticks = by_slip.ratios.first().copied().unwrap_or_default();
-        self.ratios.iter_mut().for_each(|log| *log += sticks);
-    }
-
-    /// Of a ratio, at the friction of this cell; those of the speeds and of the edge are all the same.
-    fn of_ratio(&mut self, steps: &Steps, ratio: &Ratio, cell: &Cell, foretold: &Foretold) {
-        self.edge = ratio.log_at(cell.mean, cell.variance);
-        self.speeds.fill(self.edge);
-        let friction = steps.friction;
-        for (k, log) in self.ratios.iter_mut().enumerate().take(steps.ratios.count()) {
-            let spread = friction.powi(2) * steps.ratios.variance(k);
-            let edges = [steps.ratios.lower[k], steps.ratios.upper[k]].map(|edge| friction * edge);
-            *log = foretold.log_in(ratio, edges, spread) + ratio.log_direction();
-        }
     }
 }
 
@@ -241,24 +158,32 @@ impl Chain {
 
     /// Weighs every cell by its likelihood; returns the logarithm of the density of what was read. `spare` is any chain of these bins.
     pub(super) fn weigh(&mut self, of: &Likelihood, spare: &mut Self) -> f64 {
-        let mut largest = f64::NEG_INFINITY;
-        self.each(of, |mass, log| {
-            if *mass > FAINT {
-                largest = largest.max(log);
+        let top = of.top();
+        spare.off = self.off * (of.off - top).exp();
+        spare.edge = self.edge * (of.edge - top).exp();
+        let mut sum = spare.off + spare.edge;
+        let parts =
+            [(&self.speeds, &mut spare.speeds, &of.speeds), (&self.ratios, &mut spare.ratios, &of.ratios)];
+        for (before, after, part) in parts {
+            let beside = (part.top - top).exp();
+            let cells = cells(before);
+            for (before, after) in before.chunks(cells).zip(after.chunks_mut(cells)) {
+                for ((before, after), factor) in before.iter().zip(after).zip(&part.factors) {
+                    *after = before * (beside * factor);
+                    sum += *after;
+                }
             }
-        });
-        spare.clone_from(self);
-        let mut sum = 0.0;
-        if largest > f64::NEG_INFINITY {
-            sum = spare.scale(of, |log| (log - largest).exp());
         }
         // A faint cell may be all that explains the sample.
-        if !(1e-12..1e12).contains(&sum) {
+        if !(FAINT..=f64::MAX).contains(&sum) {
             return self.in_logs(of);
         }
-        spare.each(of, |mass, _| *mass /= sum);
+        let share = 1.0 / sum;
+        spare.off *= share;
+        spare.edge *= share;
+        spare.speeds.iter_mut().chain(&mut spare.ratios).for_each(|mass| *mass *= share);
         std::mem::swap(self, spare);
-        largest + sum.ln()
+        top + sum.ln()
     }
 
     /// The same with the probabilities as logarithms too, so that nothing under- or overflows.
@@ -274,32 +199,18 @@ impl Chain {
     fn each(&mut self, of: &Likelihood, mut visit: impl FnMut(&mut f64, f64)) {
         visit(&mut self.off, of.off);
         visit(&mut self.edge, of.edge);
-        for (masses, logs) in [(&mut self.speeds, &of.speeds), (&mut self.ratios, &of.ratios)] {
-            // Where all ratios are one cell, all paces are.
-            let cells = masses.len().div_ceil(PACES);
+        for (masses, part) in [(&mut self.speeds, &of.speeds), (&mut self.ratios, &of.ratios)] {
+            let cells = cells(masses);
             for masses in masses.chunks_mut(cells) {
-                masses.iter_mut().zip(logs).for_each(|(mass, log)| visit(mass, *log));
+                masses.iter_mut().zip(&part.logs).for_each(|(mass, log)| visit(mass, part.top + log));
             }
         }
     }
+}
 
-    /// Takes every cell times what its logarithm comes to, which is the same at all paces; returns the sum.
-    fn scale(&mut self, of: &Likelihood, factor: impl Fn(f64) -> f64) -> f64 {
-        self.off *= factor(of.off);
-        self.edge *= factor(of.edge);
-        let mut sum = self.off + self.edge;
-        for (masses, logs) in [(&mut self.speeds, &of.speeds), (&mut self.ratios, &of.ratios)] {
-            let cells = masses.len().div_ceil(PACES);
-            for (k, log) in logs.iter().enumerate().take(cells) {
-                let factor = factor(*log);
-                for mass in masses.iter_mut().skip(k).step_by(cells) {
-                    *mass *= factor;
-                    sum += *mass;
-                }
-            }
-        }
-        sum
-    }
+/// Cells of one pace; where all ratios are one cell, all paces are.
+fn cells(masses: &[f64]) -> usize {
+    masses.len().div_ceil(PACES)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -2,10 +2,11 @@
 
 use super::asleep::Followed;
 use super::bins::Bins;
-use super::chain::{Chain, Likelihood};
+use super::chain::Chain;
 use super::density::{Ratio, Slip};
 use super::foretold::Foretold;
 use super::friction::{Cell, FrictionGrid, Guess, guessed};
+use super::likelihood::{Likelihood, Part};
 
 /// Probabilities of one contact's modes, in the order off, slide, stick.
 pub(super) type Modes = [f64; 3];
@@ -32,6 +33,8 @@ pub(super) struct Contact {
     spares: Vec<Chain>,
     /// As long as the longest chain needs.
     likelihood: Likelihood,
+    /// Of the bins of the ratio that all frictions have.
+    of_all: Part,
     /// Of a slip alone, which says the same of all ratios: they are one cell.
     by_slip: Likelihood,
     /// Sum over the frictions, by their weights: what the slip is weighed against. All ratios are one cell: the slip tells none from another.
@@ -76,8 +79,6 @@ impl Contact {
         let chains: Vec<Chain> = grid.steps.iter().map(Chain::new).collect();
         let longest = grid.steps.iter().map(|steps| steps.ratios.count()).max().unwrap_or(0);
         let mean = Chain { ratios: vec![0.0], ..chains[0].clone() };
-        let likelihood = Likelihood { ratios: vec![0.0; longest], ..Likelihood::none(&grid.steps[0]) };
-        let by_slip = Likelihood { ratios: vec![0.0], ..Likelihood::none(&grid.steps[0]) };
         let log_evidence = vec![0.0; chains.len()];
         let (spare, tried) = (mean.clone(), mean.clone());
         Self {
@@ -91,8 +92,9 @@ impl Contact {
             ratio: None,
             noise: 0.0,
             guess: Guess::NONE,
-            likelihood,
-            by_slip,
+            likelihood: Likelihood::none(longest),
+            of_all: Part::none(grid.of_all.count()),
+            by_slip: Likelihood::none(1),
             mean,
             spare,
             tried,
@@ -120,12 +122,13 @@ impl Contact {
             Force::Presses { touching, .. } => *touching,
             Force::Silent | Force::Off | Force::Touches => 0.0,
         };
-        if let Force::Presses { ratio, .. } = force {
+        if let Force::Presses { ratio, foretold, .. } = force {
             self.rouse(grid, ratio);
+            self.of_all.of_bins(&grid.of_all, ratio, foretold);
         }
         slip.iter().for_each(|slip| self.by_slip.of_slip(slip, speeds));
         for (i, cell) in self.cells.iter().enumerate().filter(|(i, _)| self.followed[*i] == Followed::Alone) {
-            self.likelihood.of_force(&grid.steps[i], force, cell);
+            self.likelihood.of_force(&grid.steps[i], force, cell, Some(&self.of_all));
             if slip.is_some() {
                 self.likelihood.add_slip(&self.by_slip);
             }

@@ -13,6 +13,8 @@ use super::steps::{CHANGED, PACES, walked_ratio};
 const FRESH: f64 = 0.05;
 /// Deviations beyond which a ratio has jumped, and is known by the last reading alone.
 const JUMPED: f64 = 5.0;
+/// Logarithm beside the largest below which a density adds nothing.
+const OF_NO_ACCOUNT: f64 = -60.0;
 /// Variances of a reading that the spread of a bin is at least, so that what is in it matters.
 const WIDE: f64 = 1.0;
 
@@ -72,16 +74,25 @@ impl Foretold {
     /// Log-density of the size of a ratio that is truly in a bin of these edges, of this variance if it may be anywhere in it.
     pub(super) fn log_in(&self, ratio: &Ratio, [lower, upper]: [f64; 2], spread: f64) -> f64 {
         let noise = ratio.deviation.powi(2);
-        let anywhere = log_density(ratio.size - 0.5 * (lower + upper), noise + spread);
+        let off = ratio.size - 0.5 * (lower + upper);
+        let anywhere = log_density(off, noise + spread);
         let Some(paces) = self.paces.as_ref().filter(|_| spread > WIDE * noise) else { return anywhere };
-        let near = |level: &Level| {
+        // Logarithms beside that of anywhere in the bin.
+        let near = paces.map(|level| {
             // Of what leads out of the bin the nearest is in it.
             let mean = level.mean.clamp(lower, upper);
-            level.share * log_density(ratio.size - mean, noise + level.variance.min(spread)).exp()
-        };
-        (FRESH * anywhere.exp() + (1.0 - FRESH) * paces.iter().map(near).sum::<f64>())
-            .ln()
-            .max(anywhere + FRESH.ln())
+            let variance = noise + level.variance.min(spread);
+            let wider = (noise + spread) / variance;
+            (0.5 * (off * off / (noise + spread) - (ratio.size - mean).powi(2) / variance), wider)
+        });
+        let top = near.iter().fold(0.0_f64, |top, (log, _)| top.max(*log));
+        let fresh = if top == 0.0 { FRESH } else { FRESH * (-top).exp() };
+        if near.iter().all(|(log, _)| log - top < OF_NO_ACCOUNT) {
+            return anywhere + FRESH.ln();
+        }
+        let told =
+            |((log, wider), level): (&(f64, f64), &Level)| level.share * wider.sqrt() * (log - top).exp();
+        anywhere + top + (fresh + (1.0 - FRESH) * near.iter().zip(paces).map(told).sum::<f64>()).ln()
     }
 }
 

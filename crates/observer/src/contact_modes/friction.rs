@@ -1,8 +1,9 @@
 //! Coefficients of friction: one that is known, or a grid of what it may be.
 
+use super::bins::Bins;
 use super::contact::Contact;
 use super::density::Ratio;
-use super::steps::Steps;
+use super::steps::{Steps, bins_of_all};
 
 /// The grid of an unknown friction: this many values, alike in ratio, from lowest to highest.
 const VALUES: u32 = 160;
@@ -55,6 +56,8 @@ pub(super) struct FrictionGrid {
     pub(super) values: Vec<f64>,
     /// What happens at each in a time step.
     pub(super) steps: Vec<Steps>,
+    /// Bins of the ratio that all of them have.
+    pub(super) of_all: Bins,
     /// Of these the latest time step was so many.
     pub(super) times: usize,
     /// Given all samples of the material, were it one friction; sum to one.
@@ -101,6 +104,7 @@ impl FrictionGrid {
         Self {
             of,
             steps: values.iter().map(|friction| Steps::that_follow(dt, *friction)).collect(),
+            of_all: bins_of_all(values.iter().copied().fold(0.0, f64::max)),
             times: 0,
             shared: vec![0.0; values.len()],
             values,
@@ -224,6 +228,11 @@ impl Cell {
         self.mean = (self.mean + gain * (ratio.size - self.mean)).clamp(self.ends[0], self.ends[1]);
         self.variance *= 1.0 - gain;
     }
+}
+
+/// Bins of the ratio that all frictions of a whole log have.
+pub(super) fn whole_bins() -> Bins {
+    bins_of_all(WHOLE.1)
 }
 
 /// The frictions that are looked at over a whole log.

@@ -4,9 +4,10 @@
 //! What tells it is that the same forces and slips are likelier with each other at another time.
 
 use super::bins::Bins;
-use super::chain::{Chain, Likelihood};
+use super::chain::Chain;
 use super::contact::{Force, SlipRead};
 use super::friction::Cell;
+use super::likelihood::Likelihood;
 use super::reading::{ContactReading, ContactSlip, turned};
 use super::steps::{Steps, speeds};
 use std::collections::VecDeque;
@@ -86,7 +87,7 @@ impl Late {
             lagged: std::array::from_fn(|_| lagged()),
             spare: chain.clone(),
             at_once: chain,
-            likelihood: Likelihood::none(steps),
+            likelihood: Likelihood::none(steps.ratios.count()),
             t: 0.0,
         }
     }
@@ -98,7 +99,7 @@ impl Late {
             Force::Presses { ratio, .. } => self.cell.mean > CLEAR * ratio.deviation,
             _ => false,
         };
-        self.likelihood.of_force(steps, force, &self.cell);
+        self.likelihood.of_force(steps, force, &self.cell, None);
         let Self { likelihood, spare, .. } = self;
         let mut step = |chain: &mut Chain| {
             (0..times).for_each(|_| chain.predict(steps, spare));

@@ -2,7 +2,7 @@
 //! estimate of the slip.
 //!
 //! Each mode gives a density of the same outputs (`density.rs`), and remembers what changes slowly: sliding its speed, sticking
-//! the ratio of friction to normal force, on bins (`bins.rs`, `steps.rs`, `chain.rs`). A friction that is not known is carried
+//! the ratio of friction to normal force, on bins (`bins.rs`, `steps.rs`, `chain.rs`; what a sample says in each, `likelihood.rs`). A friction that is not known is carried
 //! as a grid (`friction.rs`, `contact.rs`), of which those are followed that are near the ratio (`asleep.rs`); where in its bin a ratio is, those before it say (`foretold.rs`). Slips of several contacts share the error of one twist (`twist.rs`).
 //! What is left of readings where modes are told is held against their noise (`doubt.rs`), and whether forces go better
 //! with slips of before is followed beside them (`late.rs`). `classifier.rs` is the way of a sample.
@@ -36,6 +36,7 @@ mod error;
 mod foretold;
 mod friction;
 mod late;
+mod likelihood;
 pub(crate) mod normal;
 mod options;
 mod passage;

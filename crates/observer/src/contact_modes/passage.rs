@@ -1,16 +1,17 @@
 //! One contact through a whole log: its evidence for each friction, and its modes given one.
 
 use super::bins::Bins;
-use super::chain::{Chain, Likelihood};
+use super::chain::Chain;
 use super::classifier::{ContactOdds, FIRST};
 use super::contact::{Force, SlipRead};
 use super::doubt::{Left, Told};
 use super::foretold::Foretold;
-use super::friction::{Cell, SURE};
+use super::friction::{Cell, SURE, whole_bins};
 use super::late::{Brought, Late};
+use super::likelihood::{Likelihood, Part};
 use super::options::ContactModesOptions;
 use super::reading::{ContactReading, ContactSeen, ContactSlip, turned};
-use super::steps::{SAME as KIND, SPEEDS, Steps, speeds};
+use super::steps::{SAME as KIND, Steps, speeds};
 
 /// Logarithm of the odds against a friction at which it is given up: given the model it would come back once in 10^26. They are odds against the
 /// largest friction, of which a contact sticks whatever it does: one that looks like a friction for a while, where a ratio stays the same, is
@@ -117,6 +118,8 @@ pub(super) struct AtFriction {
 struct Said {
     force: Force,
     by_slip: Option<Likelihood>,
+    /// What the ratio says in the bins that all frictions have.
+    of_all: Option<Part>,
 }
 
 /// One contact through a whole log.
@@ -127,9 +130,15 @@ pub(super) struct Passage {
 impl Passage {
     pub(super) fn new(seen: &[ContactSeen], pace: &Pace, options: &ContactModesOptions) -> Self {
         let mut foretold = Foretold::default();
+        let bins = whole_bins();
         let one = |(k, seen): (usize, &ContactSeen)| {
             let mut said = Said::new(seen, pace, k, options);
             foretold.tell(pace.steps[k], &mut said.force);
+            if let Force::Presses { ratio, foretold, .. } = &said.force {
+                let mut of_all = Part::none(bins.count());
+                of_all.of_bins(&bins, ratio, foretold);
+                said.of_all = Some(of_all);
+            }
             said
         };
         let said = seen.iter().enumerate().map(one).collect();
@@ -279,7 +288,7 @@ struct Tried<'a> {
 impl<'a> Tried<'a> {
     fn new(at: &'a AtFriction) -> Self {
         let first = &at.steps[0];
-        let (chain, likelihood) = (Chain::new(first), Likelihood::none(first));
+        let (chain, likelihood) = (Chain::new(first), Likelihood::none(first.ratios.count()));
         Self { at, spare: chain.clone(), chain, cell: Cell::new(at.friction), likelihood, log: 0.0 }
     }
 
@@ -302,17 +311,16 @@ impl Said {
             let ContactSlip { velocity, covariance } = reading.slip?;
             let (u, turn) = reading.direction();
             let slip = turned(&velocity, &covariance, &u, options.natural_speed);
-            let mut by_slip =
-                Likelihood { off: 0.0, edge: 0.0, speeds: vec![0.0; SPEEDS], ratios: vec![0.0] };
+            let mut by_slip = Likelihood::none(1);
             by_slip.of_slip(&SlipRead { slip, turn, weight: pace.weights[k] }, &pace.speeds);
             Some(by_slip)
         });
-        Self { force: seen.force(options), by_slip }
+        Self { force: seen.force(options), by_slip, of_all: None }
     }
 
     /// Log-densities of all that is read, in each cell; the factor that all modes that touch have in common is the same for all frictions.
     fn of(&self, steps: &Steps, cell: &Cell, likelihood: &mut Likelihood) {
-        likelihood.of_force(steps, &self.force, cell);
+        likelihood.of_force(steps, &self.force, cell, self.of_all.as_ref());
         if let (Some(by_slip), false) = (&self.by_slip, matches!(self.force, Force::Off)) {
             likelihood.add_slip(by_slip);
         }

@@ -65,6 +65,8 @@ const LEAST: f64 = 1e-12;
 pub(super) struct Steps {
     pub(super) speeds: Bins,
     pub(super) ratios: Bins,
+    /// So many of the first are those of all frictions (see [`bins_of_all`]).
+    pub(super) common: usize,
     /// Of each pace: what steps under zero sticks from now on.
     pub(super) speed: [Walk; PACES],
     /// Of each pace: what steps over one, the friction, slides from now on.
@@ -92,14 +94,11 @@ impl Steps {
     /// Bins and walk of the ratio are those of any other friction, cut off at this one: how a contact sticks well within its cone then
     /// says nothing of where that ends. Were they shares of the friction, a ratio that changes slowly would speak for a low one.
     pub(super) fn of_friction(dt: f64, friction: f64) -> Self {
-        let edge = |k: usize| match k.checked_sub(FINE) {
-            None => LOW * k as f64 / FINE as f64,
-            Some(beyond) => LOW * WIDER.powi(beyond as i32),
-        };
         // Close to the cone bins are those of a known friction, which get narrow there.
         let rim: Vec<f64> = (0..=RIM).rev().map(|k| relative((RATIOS - k) as f64 / RATIOS as f64)).collect();
         let within = |edge: &f64| *edge < rim[0] - (rim[1] - rim[0]);
         let mut edges: Vec<f64> = (0..).map(|k| edge(k) / friction).take_while(within).collect();
+        let common = edges.len().saturating_sub(1);
         edges.extend(rim);
         let (speeds, ratios) = (speeds(), Bins::between(&edges));
         let at_each = |shares: Vec<f64>| -> Vec<f64> {
@@ -120,6 +119,7 @@ impl Steps {
             ratio: std::array::from_fn(|_| Walk::on(ratios.count())),
             speeds,
             ratios,
+            common,
             friction,
             dt,
         };
@@ -190,6 +190,20 @@ pub(super) fn walked_ratio(pace: usize, dt: f64) -> f64 {
 fn of_smooth(units: f64) -> f64 {
     let at_one_rate = units.clamp(1.0, SMOOTH);
     at_one_rate * (units / at_one_rate).sqrt()
+}
+
+/// An edge of the bins of the ratio that all frictions have, as far as they reach.
+fn edge(k: usize) -> f64 {
+    match k.checked_sub(FINE) {
+        None => LOW * k as f64 / FINE as f64,
+        Some(beyond) => LOW * WIDER.powi(beyond as i32),
+    }
+}
+
+/// Bins of the ratio that all frictions up to this one have, as such and not over the friction.
+pub(super) fn bins_of_all(highest: f64) -> Bins {
+    let within: Vec<f64> = (0..).map(edge).take_while(|edge| *edge < highest).collect();
+    Bins::between(if within.len() > 1 { &within } else { &[0.0, LOW] })
 }
 
 /// Edges of ratios over a known friction: close together near one.
