@@ -35,7 +35,8 @@
 //! | that the body is not convex | [`ShapeBounds::from_concave_contacts`], [`concave`] |
 //! | that it is seen from some place inside as a whole, smooth; that contacts are noisy | [`approximation`] |
 //! | poses of a body that rests on a plane | [`poses`] |
-//! | its farthest points along directions, and how far from it a point is, is asked | [`distance`] |
+//! | farthest points, distances, polytopes and moments of any of these bounds, or of a fit, are asked | [`body`] |
+//! | the same of a body that is a function of one's own | [`distance`] |
 //! | that it all lies in a plane | [`planar`] |
 //!
 //! Hulls and half-spaces themselves are those of the crate [`exact_hull`], which stands here as a module.
@@ -45,6 +46,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 pub mod approximation;
+pub mod body;
 mod bounds;
 pub mod concave;
 pub mod curvature;
@@ -61,6 +63,8 @@ mod matrix;
 mod median;
 pub mod noise;
 pub mod palms;
+#[cfg(feature = "parry")]
+pub mod parry;
 pub mod planar;
 pub mod poses;
 mod sample;

@@ -5,8 +5,7 @@ use super::circle::Circle;
 use super::steiner::ConvexMeasures;
 use super::support::BallWalk;
 use super::surface::{Corner, Shape};
-use crate::bounds::ShapeBounds;
-use crate::faceted::{FacetError, faceted_by_support};
+use crate::body::{Climb, ConvexBody};
 use contact_kinematics::Direction;
 use exact_hull::arithmetic::Compensated;
 use glam::DVec3;
@@ -47,32 +46,6 @@ impl BallHull {
     #[must_use]
     pub fn skipped(&self) -> usize {
         self.dual.skipped()
-    }
-
-    /// Support function in m, in time O(n).
-    #[must_use]
-    pub fn support(&self, n: Direction) -> f64 {
-        self.dual.radius() + self.margin - self.dual.support(-n)
-    }
-
-    /// Whether `point` is inside, to rounding of the largest radius; in time O(n).
-    ///
-    /// The body is the intersection of the balls of radius `rho_max` about all points of the dual, so that the one farthest
-    /// from `point` decides.
-    #[must_use]
-    pub fn contains(&self, point: DVec3) -> bool {
-        let limit = self.dual.radius() + self.margin;
-        self.dual.farthest_from(point) <= limit * (1.0 + 4.0 * f64::EPSILON)
-    }
-
-    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
-    /// bracket of its volume.
-    ///
-    /// # Errors
-    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
-    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        let mut walk = BallWalk::new(&self.dual);
-        faceted_by_support(|d| d * (self.dual.radius() + self.margin) + walk.farthest(-d), tolerance)
     }
 
     /// Volume in m^3.
@@ -143,6 +116,27 @@ impl BallHull {
             curvature.add(part.mean_curvature);
         }
         ConvexMeasures { volume: volume.value(), area: area.value(), mean_curvature: curvature.value() }
+    }
+}
+
+impl ConvexBody for BallHull {
+    fn climb(&self) -> Climb<'_> {
+        let (mut walk, radius) = (BallWalk::new(&self.dual), self.dual.radius() + self.margin);
+        Box::new(move |d| d.normalize_or_zero() * radius + walk.farthest(-d))
+    }
+
+    /// Support function in m, in time O(n).
+    fn support(&self, n: Direction) -> f64 {
+        self.dual.radius() + self.margin - self.dual.support(-n)
+    }
+
+    /// Whether `point` is inside, to rounding of the largest radius; in time O(n).
+    ///
+    /// The body is the intersection of the balls of radius `rho_max` about all points of the dual, so that the one farthest
+    /// from `point` decides.
+    fn contains(&self, point: DVec3) -> bool {
+        let limit = self.dual.radius() + self.margin;
+        self.dual.farthest_from(point) <= limit * (1.0 + 4.0 * f64::EPSILON)
     }
 }
 

@@ -8,10 +8,8 @@ use super::steiner::ConvexMeasures;
 use super::support::BallWalk;
 use super::surface::{Shape, Surface};
 use super::{ROUNDING, VolumeRange, check_contacts};
-use crate::bounds::ShapeBounds;
-use crate::faceted::{FacetError, faceted_by_support};
+use crate::body::{Climb, ConvexBody};
 use crate::sample::ContactSample;
-use contact_kinematics::Direction;
 use exact_hull::arithmetic::Compensated;
 use exact_hull::insertion_order;
 use glam::DVec3;
@@ -260,27 +258,17 @@ impl BallIntersection {
         let area = total.value();
         ConvexMeasures { volume: threefold.value() / 3.0, area, mean_curvature: area / rho + edges.value() }
     }
+}
 
-    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
-    /// bracket of its volume.
-    ///
-    /// # Errors
-    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
-    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
+impl ConvexBody for BallIntersection {
+    fn climb(&self) -> Climb<'_> {
         let mut walk = BallWalk::new(self);
-        faceted_by_support(|d| walk.farthest(d), tolerance)
+        Box::new(move |d| walk.farthest(d))
     }
 
     /// Whether `point` is in all balls, to rounding.
-    #[must_use]
-    pub fn contains(&self, point: DVec3) -> bool {
+    fn contains(&self, point: DVec3) -> bool {
         self.faces().all(|k| point.distance(self.surface.centre(k)) <= self.radius() * (1.0 + ROUNDING))
-    }
-
-    /// Support function in m, in time O(n).
-    #[must_use]
-    pub fn support(&self, n: Direction) -> f64 {
-        BallWalk::new(self).farthest(n.get()).dot(n.get())
     }
 }
 

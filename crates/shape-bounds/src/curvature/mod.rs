@@ -50,6 +50,7 @@ pub use rounded::RoundedHull;
 pub use sharp::{RoundedIntersection, SharpBounds};
 pub use steiner::ConvexMeasures;
 
+use crate::body::ConvexBody;
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use exact_hull::HalfSpace;

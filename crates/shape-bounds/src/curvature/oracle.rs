@@ -1,6 +1,7 @@
 //! The intersection of equal balls against every triple of balls, tried one by one.
 
 use super::*;
+use crate::body::ConvexBody;
 use crate::generators::Source;
 use std::f64::consts::PI;
 

@@ -1,9 +1,8 @@
 //! The hull of equal balls: hull of the centres plus a ball.
 
 use super::steiner::ConvexMeasures;
-use crate::bounds::ShapeBounds;
+use crate::body::{Climb, ConvexBody};
 use crate::distance::{farthest_of, nearest};
-use crate::faceted::{FacetError, faceted_by_support};
 use contact_kinematics::Direction;
 use exact_hull::arithmetic::{Compensated, cross_of_differences};
 use exact_hull::{Hull, PointsError, SolidHull, SupportWalk};
@@ -60,30 +59,6 @@ impl RoundedHull {
         self.measures().area
     }
 
-    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
-    /// bracket of its volume.
-    ///
-    /// # Errors
-    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
-    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        let mut farthest = self.core_support();
-        faceted_by_support(|d| farthest(d) + d * self.radius, tolerance)
-    }
-
-    /// Support function in m.
-    #[must_use]
-    pub fn support(&self, n: Direction) -> f64 {
-        self.corners.iter().map(|c| c.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
-    }
-
-    /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
-    #[must_use]
-    pub fn contains(&self, point: DVec3) -> bool {
-        let found = nearest(point, &self.corners[..1], self.core_support());
-        let rounding = 4.0 * f64::EPSILON * (point.abs().max_element() + self.radius);
-        found.certified <= self.radius + rounding
-    }
-
     /// The corner of the core farthest along a direction.
     pub(super) fn core_support(&self) -> impl FnMut(DVec3) -> DVec3 + '_ {
         let mut walk = self.core.solid().map(SupportWalk::new);
@@ -112,6 +87,25 @@ impl RoundedHull {
                 ConvexMeasures { volume: moments.volume, area: moments.area, mean_curvature }
             }
         }
+    }
+}
+
+impl ConvexBody for RoundedHull {
+    fn climb(&self) -> Climb<'_> {
+        let mut farthest = self.core_support();
+        Box::new(move |d| farthest(d) + d.normalize_or_zero() * self.radius)
+    }
+
+    /// Support function in m.
+    fn support(&self, n: Direction) -> f64 {
+        self.corners.iter().map(|c| c.dot(n.get())).fold(f64::NEG_INFINITY, f64::max) + self.radius
+    }
+
+    /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
+    fn contains(&self, point: DVec3) -> bool {
+        let found = nearest(point, &self.corners[..1], self.core_support());
+        let rounding = 4.0 * f64::EPSILON * (point.abs().max_element() + self.radius);
+        found.certified <= self.radius + rounding
     }
 }
 

@@ -6,9 +6,10 @@ use super::error::CurvatureError;
 use super::steiner::ConvexMeasures;
 use super::support::BallWalk;
 use super::{ROUNDING, VolumeRange, check_contacts};
+use crate::body::{Climb, ConvexBody};
 use crate::bounds::ShapeBounds;
 use crate::distance::nearest;
-use crate::faceted::{FacetError, faceted_by_support};
+use crate::faceted::FacetError;
 use crate::sample::ContactSample;
 use contact_kinematics::{CurvatureRadii, Direction};
 use glam::DVec3;
@@ -148,26 +149,21 @@ impl RoundedIntersection {
     pub fn volume(&self) -> f64 {
         self.measures().volume
     }
+}
+
+impl ConvexBody for RoundedIntersection {
+    fn climb(&self) -> Climb<'_> {
+        let mut walk = BallWalk::new(&self.core);
+        Box::new(move |d| walk.farthest(d) + d.normalize_or_zero() * self.margin)
+    }
 
     /// Support function in m, in time O(n).
-    #[must_use]
-    pub fn support(&self, n: Direction) -> f64 {
+    fn support(&self, n: Direction) -> f64 {
         self.core.support(n) + self.margin
     }
 
-    /// Polytopes inside and outside of the body, within `tolerance` (m) of each other: meshes of its surface, and a certified
-    /// bracket of its volume.
-    ///
-    /// # Errors
-    /// [`FacetError`] for a tolerance that is not possible or takes too many facets, and for a body without interior.
-    pub fn faceted(&self, tolerance: f64) -> Result<ShapeBounds, FacetError> {
-        let mut walk = BallWalk::new(&self.core);
-        faceted_by_support(|d| walk.farthest(d) + d * self.margin, tolerance)
-    }
-
     /// Whether `point` is inside; one outside by a few units of rounding may be admitted.
-    #[must_use]
-    pub fn contains(&self, point: DVec3) -> bool {
+    fn contains(&self, point: DVec3) -> bool {
         let mut walk = BallWalk::new(&self.core);
         let start = walk.farthest(point - self.core.interior());
         let found = nearest(point, &[start], |d| walk.farthest(d));

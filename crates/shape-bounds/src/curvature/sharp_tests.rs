@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::ConvexBody;
 use crate::bounds::ShapeBounds;
 use crate::generators::{AXES, Source, curve_contacts, ellipsoid_contacts, ellipsoid_support};
 use exact_hull::HullCertificate;
