@@ -7,7 +7,7 @@
 mod paced;
 mod tally;
 
-use recon::observer::contacts::stream::{PlaneReadings, StreamEstimate};
+use recon::observer::contacts::stream::{PlaneReadings, StreamError, StreamEstimate};
 use recon_benches::fault::FAULTS;
 use recon_benches::streaming::{Case, some};
 use tally::Tally;
@@ -144,7 +144,12 @@ fn followed(
     let mut before = 0;
     for (k, sample) in case.samples.iter().enumerate().filter(|(_, sample)| kept(sample.t)) {
         if let Some((t, sensed)) = readings.push(sample)? {
-            estimates.push((before, stream.push(t, &sensed)?));
+            // A sample that a palm's readings stand still in is refused, and left out.
+            match stream.push(t, &sensed) {
+                Ok(estimate) => estimates.push((before, estimate)),
+                Err(StreamError::Stuck { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
         }
         before = k;
     }

@@ -127,3 +127,50 @@ impl Caps<'_> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Intersection;
+    use crate::HalfSpace;
+    use crate::generators::{AXES, Source, ellipsoid_half_spaces};
+    use glam::DVec3;
+    use unit_direction::Direction;
+
+    /// Of planes through and beside a body one after the other: how far it reaches beyond each, and what is cut off, is what the intersection with the
+    /// half-space beyond the plane says, which goes another way.
+    #[test]
+    fn caps_are_intersections_with_what_is_beyond_a_plane() {
+        let mut source = Source::new(23);
+        let normals: Vec<DVec3> = (0..60).map(|_| source.direction()).collect();
+        let spaces = ellipsoid_half_spaces(&normals);
+        let intersection = Intersection::of(&spaces).unwrap();
+        let body = intersection.bounded().unwrap();
+        let mut caps = body.caps();
+        let (mut cut, mut beside) = (0, 0);
+        for _ in 0..200 {
+            let normal = Direction::new(source.direction()).unwrap();
+            let point = source.normal3() * AXES * 0.6;
+            let plane = HalfSpace { point, normal, margin: source.between(-0.1, 0.1) };
+            let height = caps.height(&plane);
+            let expected = body.support(normal) - normal.get().dot(point) - plane.margin;
+            assert!((height - expected).abs() < 1e-12, "{height} {expected}");
+            let (from, ball) = (source.normal3(), caps.ball(&plane));
+            let reach = caps.reach(&plane, from);
+            if height < 0.0 {
+                beside += 1;
+                assert!(ball.is_none() && reach == 0.0, "{ball:?} {reach}");
+                continue;
+            }
+            let beyond = HalfSpace { normal: -normal, margin: -plane.margin, ..plane };
+            let all: Vec<HalfSpace> = spaces.iter().copied().chain([beyond]).collect();
+            let cap = Intersection::of(&all).unwrap();
+            let cap = cap.bounded().unwrap();
+            let farthest = |from: DVec3| cap.vertices().iter().map(|v| v.distance(from)).fold(0.0, f64::max);
+            assert!((reach - farthest(from)).abs() < 1e-9, "{reach} {}", farthest(from));
+            let (centre, radius) = ball.unwrap();
+            assert!((radius - farthest(centre)).abs() < 1e-9, "{radius}");
+            cut += 1;
+        }
+        assert!(cut > 50 && beside > 5, "{cut} {beside}");
+    }
+}
