@@ -165,7 +165,8 @@ mod tests {
                 DVec3::new(0.3, turn, -0.2),
             );
             for other in [&Cuboid::new(DVec3::new(0.3, 0.2, 0.4)) as &dyn Shape, &Ball::new(0.3)] {
-                let [a, b] = shapes.map(|rod| query::distance(&Pose::IDENTITY, rod, &at, other).unwrap().distance);
+                let [a, b] =
+                    shapes.map(|rod| query::distance(&Pose::IDENTITY, rod, &at, other).unwrap().distance);
                 assert!((a - b).abs() < 1e-6 && a > 0.1, "{a} {b}");
                 let near: [Option<Contact>; 2] =
                     shapes.map(|rod| query::contact(&Pose::IDENTITY, rod, &at, other, 3.0).unwrap());
@@ -199,7 +200,10 @@ mod tests {
         let flat = Cuboid::new(DVec3::new(1.0, 1.0, 0.1));
         for (height, touches) in [(0.301, false), (0.299, true)] {
             let at = Pose::from_translation(DVec3::Z * height);
-            assert_eq!(query::intersection_test(&Pose::IDENTITY, &flat, &at, &egg).unwrap().intersecting, touches);
+            assert_eq!(
+                query::intersection_test(&Pose::IDENTITY, &flat, &at, &egg).unwrap().intersecting,
+                touches
+            );
         }
     }
 }
