@@ -3,7 +3,7 @@
 //! A search looks for them once. Of a body whose inertia, or how it lies, is hardly known the readings may speak for another motion later on, far
 //! from the one that is followed: each window of such a body is tried from one other start, and what that leads to is followed as well until the
 //! readings rule one of them out. As long as there are several none is stated. Where there was one there are likely to be more: none is stated for
-//! some windows then, and for twice as many each time that this was not enough.
+//! some windows then, and for twice as many each time that this was not enough. Once a motion was alone for that long, another one is news: it costs as few windows as the first did.
 
 use super::window::Window;
 use crate::contacts::body::CONSTANTS;
@@ -54,6 +54,10 @@ impl Window {
         first: Solved<CONSTANTS>,
         free: Beforehand,
     ) -> (Followed, Vec<Followed>) {
+        if self.believed && self.waits == 0 {
+            // What misled the search that led to a motion says nothing of one that was alone for long since.
+            self.misled = 0;
+        }
         let misled = self.misled;
         let mut best = Followed::of(problem, first);
         let mut all = Vec::new();
@@ -69,7 +73,11 @@ impl Window {
         if alone && unsure {
             self.looked += 1;
             let other = another(problem, &best.solved, self.looked);
-            self.misled += usize::from(other.is_some());
+            if self.believed && other.is_some() {
+                self.waits = self.waits.max(ALONE);
+            } else {
+                self.misled += usize::from(other.is_some());
+            }
             all.extend(other.map(|solved| Followed::of(problem, solved)));
         }
         for other in &mut all {

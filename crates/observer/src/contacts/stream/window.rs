@@ -96,7 +96,7 @@ pub(super) struct Window {
     pub(super) misled: usize,
     dearer: Dearer,
     /// Whether a motion of this search was relied on.
-    believed: bool,
+    pub(super) believed: bool,
 }
 
 impl Window {
