@@ -40,3 +40,30 @@ pub(super) fn joined(half_spaces: &[HalfSpace], interior: DVec3) -> Option<Vec<H
     let has_twins = stands_for.iter().enumerate().any(|(k, other)| k != *other);
     has_twins.then(|| stands_for.into_iter().map(|k| half_spaces[k]).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use unit_direction::Direction;
+
+    /// Planes that are nearly one become the farthest one out, wherever they stand in the order; what differs by more stays.
+    #[test]
+    fn twins_are_joined_to_the_farthest_out() {
+        let at = |normal: DVec3, distance: f64| {
+            let normal = Direction::new(normal).unwrap();
+            HalfSpace { point: normal.get() * distance, normal, margin: 0.0 }
+        };
+        for axis in [DVec3::X, -DVec3::X, ASKEW, -ASKEW] {
+            let across = axis.any_orthonormal_vector();
+            let near = at(axis + across * 0.3 * TWINS, 1.0);
+            let far = at(axis, 1.0 + 0.5 * TWINS);
+            let tilted = at(axis + across * 4.0 * TWINS, 1.0);
+            let inner = at(axis, 1.0 - 4.0 * TWINS);
+            for pair in [[near, far], [far, near]] {
+                let spaces = [at(across, 1.0), pair[0], tilted, pair[1], inner];
+                assert_eq!(joined(&spaces, DVec3::ZERO).unwrap(), [spaces[0], far, tilted, far, inner]);
+            }
+            assert!(joined(&[far, tilted, inner], DVec3::ZERO).is_none());
+        }
+    }
+}
