@@ -20,6 +20,7 @@
 
 use crate::body::ConvexBody;
 use glam::DVec3;
+use parry3d_f64::bounding_volume::details::local_support_map_aabb;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::mass_properties::MassProperties;
 use parry3d_f64::query::details::local_ray_intersection_with_support_map_with_params;
@@ -88,10 +89,7 @@ impl<B: ConvexBody> PointQuery for ParryBody<B> {
 
 impl<B: ConvexBody + Send + Sync + 'static> Shape for ParryBody<B> {
     fn compute_local_aabb(&self) -> Aabb {
-        let mut farthest = self.0.climb();
-        let [low, high] = [-1.0, 1.0]
-            .map(|sign| DVec3::from_array(DVec3::AXES.map(|axis| farthest(axis * sign).dot(axis))));
-        Aabb::new(low, high)
+        local_support_map_aabb(self)
     }
 
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {

@@ -86,13 +86,14 @@ impl Foretold {
             (0.5 * (off * off / (noise + spread) - (ratio.size - mean).powi(2) / variance), wider)
         });
         let top = near.iter().fold(0.0_f64, |top, (log, _)| top.max(*log));
-        let fresh = if top == 0.0 { FRESH } else { FRESH * (-top).exp() };
         if near.iter().all(|(log, _)| log - top < OF_NO_ACCOUNT) {
             return anywhere + FRESH.ln();
         }
         let told =
             |((log, wider), level): (&(f64, f64), &Level)| level.share * wider.sqrt() * (log - top).exp();
-        anywhere + top + (fresh + (1.0 - FRESH) * near.iter().zip(paces).map(told).sum::<f64>()).ln()
+        anywhere
+            + top
+            + (FRESH * (-top).exp() + (1.0 - FRESH) * near.iter().zip(paces).map(told).sum::<f64>()).ln()
     }
 }
 

@@ -9,6 +9,7 @@ use super::density::Ratio;
 use super::foretold::Foretold;
 use super::friction::Cell;
 use super::steps::{SPEEDS, Steps};
+use std::ops::Range;
 
 /// Logarithm beside the largest below which a factor is nothing: the rest of what numbers hold is for probabilities.
 const NOTHING: f64 = -600.0;
@@ -51,22 +52,26 @@ impl Part {
         self.factors.fill(1.0);
     }
 
-    /// Takes the largest of the first `count` away from them, and makes their factors.
-    fn close(&mut self, count: usize) {
-        self.top = largest(&self.logs[..count]);
-        for (log, factor) in self.logs[..count].iter_mut().zip(&mut self.factors) {
+    /// Takes the largest away from all, and makes their factors.
+    fn close(&mut self) {
+        self.top = largest(&self.logs);
+        self.settle(0..self.logs.len());
+    }
+
+    /// The same of some of them, the largest being set.
+    fn settle(&mut self, some: Range<usize>) {
+        for (log, factor) in self.logs[some.clone()].iter_mut().zip(&mut self.factors[some]) {
             *log -= self.top;
             *factor = factor_of(*log);
         }
     }
 
-    /// Of the size of a ratio, with these bins from the first on.
+    /// Of the size of a ratio, with these bins.
     pub(super) fn of_bins(&mut self, bins: &Bins, ratio: &Ratio, foretold: &Foretold) {
-        let count = bins.count();
-        for (k, log) in self.logs.iter_mut().enumerate().take(count) {
+        for (k, log) in self.logs.iter_mut().enumerate() {
             *log = foretold.log_in(ratio, [bins.lower[k], bins.upper[k]], bins.variance(k));
         }
-        self.close(count);
+        self.close();
     }
 
     /// The same with the bins of one friction, of which the first are those of all; `of_all` has what these say, where it was made.
@@ -80,10 +85,7 @@ impl Part {
         let own = largest(&self.logs[common..bins.count()]);
         let shared = of_all.map_or(f64::NEG_INFINITY, |all| all.top + largest(&all.logs[..common]));
         self.top = own.max(shared);
-        for k in common..bins.count() {
-            self.logs[k] -= self.top;
-            self.factors[k] = factor_of(self.logs[k]);
-        }
+        self.settle(common..bins.count());
         let Some(all) = of_all else { return };
         let beside = all.top - self.top;
         let times = beside.min(APART).exp();
@@ -143,7 +145,7 @@ impl Likelihood {
             let (speed, spread) = (speeds.middle(k), speeds.variance(k));
             *log = weight * slip.log_sliding(speed, spread, *turn);
         }
-        self.speeds.close(SPEEDS);
+        self.speeds.close();
     }
 
     /// With that of a slip beside it, of which speeds and ratios said nothing by themselves before.
